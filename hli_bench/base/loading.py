@@ -1,0 +1,47 @@
+"""The one place that loads by name: modules of a variant folder, user scripts, data files of the project."""
+
+import importlib
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+from hli_bench.base.errors import InputError
+
+_PACKAGE = Path(__file__).resolve().parent.parent
+
+
+def data_file(folder: str, name: str) -> Path:
+    """Return the path of `folder/name` (`eds`, `plc_scripts`, `programs`, `machines`), in a checkout or a wheel.
+
+    Raises InputError when neither place has it.
+    """
+    places = [_PACKAGE.parent / folder / name, _PACKAGE / "_data" / folder / name, _PACKAGE / folder / name]
+    for place in places:
+        if place.exists():
+            return place
+    raise InputError(f"no {name!r} in {folder}/")
+
+
+def module(name: str) -> ModuleType:
+    """Import a module by its dotted path. Raises InputError when there is none of that name."""
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError as error:
+        if error.name is not None and (name == error.name or name.startswith(error.name + ".")):
+            raise InputError(f"no module {name!r} on the Python path") from error
+        raise
+
+
+def script(path: Path) -> ModuleType:
+    """Load a user's Python file as a module of its own. Raises InputError when it cannot be read."""
+    if not path.is_file():
+        raise InputError("no such file", file=str(path))
+    name = f"hli_bench_script_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise InputError("not a Python file", file=str(path))
+    loaded = importlib.util.module_from_spec(spec)
+    sys.modules[name] = loaded
+    spec.loader.exec_module(loaded)
+    return loaded

@@ -1,0 +1,56 @@
+# hli-bench: `make run` shows it, `make test` proves it. Needs Python 3.11 or newer with venv; see README.md.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := help
+
+BIN := .venv/bin
+# VCAN=no leaves the SocketCAN tests out of `make test`, for a computer that can offer no vcan at all.
+VCAN ?= yes
+
+.PHONY: help run test lint pytest test-vcan coverage-req bench lock clean
+
+help: ## Lists the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+run: .venv/.runtime ## Runs the probing program on the machine demo and writes out/report.html
+	@mkdir -p out
+	$(BIN)/hli-bench run programs/probe.nc --set plc.0.process=true \
+	  --report out/report.html --result out/result.json --can-log out/can.log
+
+test: lint pytest $(if $(filter yes,$(VCAN)),test-vcan) ## Lint, types, import contracts and all tests
+
+lint: .venv/.dev ## Lint, format, types, import contracts
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+pytest: .venv/.dev ## The tests that need no CAN interface
+	$(BIN)/python -m pytest -m "not vcan"
+
+test-vcan: .venv/.dev ## The tests on a real SocketCAN vcan0, in a virtual machine where the host has none
+	tools/vcan_vm.sh $(BIN)/python -m pytest -m vcan tests/vcan
+
+coverage-req: .venv/.dev ## Which requirement lines a test covers, which are open, which do not apply
+	$(BIN)/python tools/coverage_req.py
+
+bench: .venv/.dev ## The benchmarks; they print ratios measured side by side
+	for benchmark in benchmarks/*.py; do $(BIN)/python "$$benchmark"; done
+
+lock: ## Rewrites the lock files from pyproject.toml (needs uv)
+	tools/lock.sh
+
+clean: ## Removes the environment and everything generated
+	rm -rf .venv out build dist .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# The stamps lie in .venv: no environment, no stamp. The dev lock holds the runtime lock, so .dev serves both.
+.venv/.runtime: requirements.lock pyproject.toml
+	tools/venv.sh requirements.lock
+	@touch $@
+
+.venv/.dev: requirements-dev.lock pyproject.toml
+	tools/venv.sh requirements-dev.lock
+	@touch .venv/.runtime $@

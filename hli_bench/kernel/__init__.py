@@ -1,0 +1,1 @@
+"""The emulated CNC: one package per stage, named as in the diagnosis manual."""

@@ -1,0 +1,220 @@
+"""Kernel side of a cycle: `sense` takes actual values, keeps the history and asks the conditions; `act` interpolates."""
+
+import math
+
+from hli_bench.laws.compiled import law
+from hli_bench.laws.profile import advance, ramp
+from hli_bench.laws.rows import (
+    BRAKE,
+    FOLLOW,
+    HISTORY_CYCLES,
+    IDLE,
+    JOG,
+    PATH,
+    SEGMENTS,
+    W_CYCLE,
+    W_DIGITAL_INPUT,
+    W_FIXED_STOP,
+    W_JOG_STOPPED,
+    W_LAG_OVER,
+    W_LAG_WITHIN,
+    W_NONE,
+    W_PATH_DONE,
+    W_PROBE_STATUS,
+    W_SEGMENT,
+    W_STATUSWORD,
+    Rows,
+)
+
+
+@law
+def wrap32(value: int) -> int:
+    """Return `value` as it shows in a signed 32-bit object."""
+    return (value + 0x80000000) % 0x100000000 - 0x80000000
+
+
+@law
+def take_feedback(axis: Rows, history: Rows, number: int, position: int, cycle: int) -> None:
+    """Take a received actual position (I32 increments) of one axis: unwrap it, convert it, keep it."""
+    row = axis[number]
+    row["feedback"] += wrap32(position - row["feedback"])
+    history[cycle % HISTORY_CYCLES, number] = row["feedback"]
+    row["actual"] = (row["feedback"] - row["reference"]) / row["increments_per_unit"]
+    if row["mode"] == FOLLOW:
+        row["command"] = row["actual"]
+        row["past"][0] = row["actual"]
+        row["past"][1] = row["actual"]
+    row["lag"] = row["past"][1] - row["actual"]
+
+
+@law
+def moved_within(axis: Rows, history: Rows, number: int, cycles: int, cycle: int) -> float:
+    """Return how far (0.1 um) the actual position moved over the last `cycles` cycles."""
+    back = min(cycles, HISTORY_CYCLES - 1)
+    if cycle < back:
+        return math.inf
+    now = history[cycle % HISTORY_CYCLES, number]
+    then = history[(cycle - back) % HISTORY_CYCLES, number]
+    return abs((now - then) / axis[number]["increments_per_unit"])
+
+
+@law
+def holds(axis: Rows, path: Rows, watch: Rows, history: Rows, number: int, cycle: int) -> bool:
+    """Return whether condition `number` holds in this cycle."""
+    row = watch[number]
+    kind = row["kind"]
+    if kind == W_CYCLE:
+        return cycle >= row["limit"]
+    if kind == W_PATH_DONE:
+        return path[0]["state"] == IDLE
+    if kind == W_SEGMENT:
+        return path[0]["head"] >= row["limit"] or path[0]["state"] == IDLE
+    one = axis[row["axis"]]
+    if kind == W_JOG_STOPPED:
+        return one["velocity"] == 0.0 and one["jog_velocity"] == 0.0
+    if kind == W_LAG_OVER:
+        return abs(one["lag"]) > row["limit"]
+    if kind == W_LAG_WITHIN:
+        return abs(one["lag"]) <= row["limit"]
+    if kind == W_PROBE_STATUS:
+        return (one["probe_status"] & row["mask"]) == row["value"]
+    if kind == W_STATUSWORD:
+        return (one["statusword"] & row["mask"]) == row["value"]
+    if kind == W_DIGITAL_INPUT:
+        return (one["digital_inputs"] & row["mask"]) == row["value"]
+    if kind == W_FIXED_STOP:
+        # limit: position lag, 0 = not asked; window: greatest way in `cycles`, < 0 = not asked
+        if row["limit"] > 0.0 and abs(one["lag"]) <= row["limit"]:
+            return False
+        if (
+            row["window"] >= 0.0
+            and moved_within(axis, history, row["axis"], row["cycles"], cycle) > row["window"]
+        ):
+            return False
+        return path[0]["s"] >= row["value"]
+    return False
+
+
+@law
+def ask_watches(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) -> int:
+    """Ask every condition once; return how many have now held for their number of cycles."""
+    fired = 0
+    for w in range(watch.shape[0]):
+        row = watch[w]
+        if row["kind"] == W_NONE:
+            continue
+        if not holds(axis, path, watch, history, w, cycle):
+            row["count"] = 0
+            continue
+        row["count"] += 1
+        if row["count"] >= row["cycles"] and row["fired"] == 0:
+            row["fired"] = 1
+            fired += 1
+    return fired
+
+
+@law
+def walk_path(path: Rows, segment: Rows, time: float) -> None:
+    """Advance along the prepared segments by `time` seconds."""
+    row = path[0]
+    while time > 0.0 and row["state"] != IDLE:
+        one = segment[row["head"] % SEGMENTS]
+        split = one["split"]
+        wanted = one["feed"]
+        if row["override"] < 1.0 or one["rapid"] == 0:
+            wanted *= row["override"]
+        low = one["deceleration"][0]
+        high = one["deceleration"][1]
+        v_end = one["v_end"]
+        if row["state"] == BRAKE:
+            wanted = 0.0
+            v_end = 0.0
+            low = row["brake"][0]
+            high = row["brake"][1]
+            split = row["brake_split"]
+        elif row["hold"]:
+            wanted = 0.0
+            low = one["hold"][0]
+            high = one["hold"][1]
+        s, v, time = advance(
+            row["s"],
+            row["v"],
+            one["length"],
+            v_end,
+            wanted,
+            one["acceleration"][0],
+            one["acceleration"][1],
+            low,
+            high,
+            split,
+            time,
+        )
+        row["s"] = s
+        row["v"] = v
+        if row["state"] == BRAKE:
+            if v <= 0.0 or s >= one["length"]:
+                row["v"] = 0.0
+                row["state"] = IDLE
+            return
+        if s < one["length"]:
+            return
+        if row["head"] + 1 >= row["tail"]:
+            row["v"] = 0.0
+            row["state"] = IDLE
+            return
+        row["head"] += 1
+        row["s"] = 0.0
+        following = segment[row["head"] % SEGMENTS]
+        row["v"] = v * following["v_start"] / one["v_end"] if one["v_end"] > 0.0 else 0.0
+
+
+@law
+def act(axis: Rows, path: Rows, segment: Rows, cycle_ns: int) -> None:
+    """Interpolate one cycle: new set points and the targets of the command telegrams."""
+    time = cycle_ns * 1e-9
+    running = path[0]["state"] != IDLE
+    if running:
+        walk_path(path, segment, time)
+    one = segment[path[0]["head"] % SEGMENTS]
+    for number in range(axis.shape[0]):
+        row = axis[number]
+        row["past"][1] = row["past"][0]
+        row["past"][0] = row["command"]
+        before = row["command"]
+        mode = row["mode"]
+        if mode == PATH and running and one["moves"][number]:
+            if path[0]["s"] >= one["length"]:
+                row["command"] = one["end"][number]
+            else:
+                row["command"] = one["start"][number] + one["direction"][number] * path[0]["s"]
+            row["velocity"] = (row["command"] - before) / time
+        elif mode == JOG:
+            way, v = ramp(row["velocity"], row["jog_velocity"], row["jog_acceleration"], time)
+            row["command"] = before + way
+            row["velocity"] = v
+        else:
+            row["velocity"] = 0.0
+        position = row["command"] * row["increments_per_unit"] + row["reference"]
+        row["target"] = wrap32(int(math.floor(position + 0.5)))
+
+
+@law
+def write_log(axis: Rows, log: Rows, slot: int) -> None:
+    """Keep what this cycle's telegrams carried (frames and traces are made from it when somebody looks)."""
+    for number in range(axis.shape[0]):
+        row = axis[number]
+        out = log[slot, number]
+        out["command"] = row["command"]
+        out["actual"] = row["actual"]
+        out["lag"] = row["lag"]
+        out["target"] = row["target"]
+        out["controlword"] = row["controlword"]
+        out["statusword"] = row["statusword"]
+        out["probe_function"] = row["probe_function"]
+        out["probe_status"] = row["probe_status"]
+        out["digital_inputs"] = row["digital_inputs"]
+        out["torque_permille"] = row["torque_permille"]
+        out["following_error"] = row["following_error"]
+        out["position"] = wrap32(row["feedback"])
+        for i in range(4):
+            out["latch"][i] = row["latch"][i]

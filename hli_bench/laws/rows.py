@@ -1,0 +1,301 @@
+"""The rows that the laws work on: one structured numpy record an axis, drive, switch, signal, terminal channel.
+
+Rows are state, owned by one node and never sent. Kernel rows count in 0.1 um (0.0001 degree) and seconds,
+machine rows in encoder increments, rad, Nm and seconds; instants are whole ns since bench start.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Rows = NDArray[Any]
+"""A structured array; its dtype is one of this module."""
+
+HISTORY_CYCLES: Final = 4096
+"""Depth of the position history in cycles."""
+LOG_CYCLES: Final = 1024
+"""Depth of the cycle log; no stride is longer."""
+SEGMENTS: Final = 64
+"""Depth of the ring of prepared path segments."""
+EDGES: Final = 256
+"""Edges that one stride can report; a stride ends when the ring is nearly full."""
+NOISE: Final = 1024
+"""Pre-drawn random trigger offsets of a switch, used cyclically."""
+
+# Axis modes (AXIS["mode"])
+HOLD: Final = 0
+PATH: Final = 1
+JOG: Final = 2
+FOLLOW: Final = 3
+
+# Path states (PATH_ROW["state"])
+IDLE: Final = 0
+RUN: Final = 1
+BRAKE: Final = 2
+
+# Watch kinds (WATCH["kind"])
+W_NONE: Final = 0
+W_PATH_DONE: Final = 1
+W_SEGMENT: Final = 2
+W_JOG_STOPPED: Final = 3
+W_LAG_OVER: Final = 4
+W_LAG_WITHIN: Final = 5
+W_FIXED_STOP: Final = 6
+W_PROBE_STATUS: Final = 7
+W_STATUSWORD: Final = 8
+W_DIGITAL_INPUT: Final = 9
+W_CYCLE: Final = 10
+
+AXIS: Final = np.dtype(
+    [
+        ("command", "f8"),  # set point, ACS, 0.1 um
+        ("velocity", "f8"),  # of the set point, 0.1 um/s
+        ("past", "f8", (2,)),  # set points of the last two cycles: what the drive has by now been told
+        ("feedback", "i8"),  # actual position as the drive reports it, unwrapped, increments
+        ("increments_per_unit", "f8"),  # increments per 0.1 um, negative when the drive counts the other way
+        ("reference", "i8"),  # increments at ACS position 0
+        ("actual", "f8"),  # ACS, 0.1 um
+        ("lag", "f8"),  # set point minus actual position, 0.1 um
+        ("mode", "u1"),
+        ("jog_velocity", "f8"),  # wanted velocity of a JOG, signed, 0.1 um/s
+        ("jog_acceleration", "f8"),  # 0.1 um/s2
+        ("target", "i4"),  # what goes into the command telegram, increments
+        ("controlword", "u2"),
+        ("statusword", "u2"),
+        ("probe_function", "u2"),
+        ("probe_status", "u2"),
+        ("latch", "i4", (4,)),  # TP1 pos, TP1 neg, TP2 pos, TP2 neg, increments
+        ("digital_inputs", "u4"),
+        ("torque_permille", "i2"),
+        ("following_error", "i4"),
+    ],
+    align=True,
+)
+
+SERVO: Final = np.dtype(
+    [
+        # what the bus writes and reads (drive user unit: increment)
+        ("target", "i4"),
+        ("demand", "i4"),
+        ("position", "i4"),
+        ("velocity", "i4"),
+        ("following_error", "i4"),
+        ("torque_permille", "i2"),
+        ("torque_limit_permille", "f8"),
+        ("enabled", "u1"),
+        ("following_window", "u4"),
+        ("following_timeout_ms", "u2"),
+        ("following_elapsed_ns", "i8"),
+        ("probe_function", "u2"),
+        ("probe_status", "u2"),
+        ("latch", "i4", (4,)),
+        ("latch_time", "u4", (4,)),
+        ("digital_inputs", "u4"),
+        ("status_flags", "u2"),
+        ("fault", "u2"),
+        # loop
+        ("demand_from", "f8"),  # increments, start of the interpolation of this cycle
+        ("kv", "f8"),  # 1/s
+        ("speed_gain", "f8"),  # Nm s/rad
+        ("speed_integral_gain", "f8"),  # Nm/rad
+        ("integrator", "f8"),  # Nm
+        ("rated_torque", "f8"),  # Nm
+        ("peak_permille", "f8"),
+        # mechanics, motor side
+        ("angle", "f8"),  # rad
+        ("speed", "f8"),  # rad/s
+        ("torque", "f8"),  # Nm
+        ("inertia", "f8"),  # kg m2
+        ("viscous", "f8"),  # Nm s/rad
+        ("coulomb", "f8"),  # Nm
+        ("static", "f8"),  # Nm
+        ("increments_per_rad", "f8"),
+        ("increments_per_turn", "i8"),
+        ("zero_pulse", "i8"),  # count of the zero pulse within a turn
+        ("encoder_offset", "i8"),  # count shown at angle 0
+        # mechanical fixed stop
+        ("stop_side", "i1"),  # 0 none, +1 solid above, -1 solid below
+        ("stop_angle", "f8"),  # rad
+        ("stop_stiffness", "f8"),  # Nm/rad
+        ("stop_damping", "f8"),  # Nm s/rad
+        # wiring: index of the signal, -1 for none
+        ("probe_signal", "i4", (2,)),
+        ("input_signal", "i4", (8,)),
+        ("probe_function_seen", "u2"),
+        ("angle_before", "f8"),  # rad, start of the sub-step (edges interpolate from it)
+    ],
+    align=True,
+)
+
+SWITCH: Final = np.dtype(
+    [
+        ("signal", "i4"),
+        ("axis", "i4"),
+        ("low", "f8"),  # operated inside [low, high], rad of the axis' motor
+        ("high", "f8"),
+        ("hysteresis", "f8"),  # released beyond low - hysteresis, high + hysteresis, rad
+        ("noise_index", "i4"),
+        ("state", "u1"),
+        ("bounce_ns", "i8"),
+        ("noise", "f8", (NOISE,)),  # added to low / subtracted from high at each contact, rad
+    ],
+    align=True,
+)
+
+SIGNAL: Final = np.dtype(
+    [
+        ("operated", "i4"),  # how many switches hold it
+        ("level", "u1"),
+        ("forced", "i1"),  # -1 none, else the level it is stuck at
+    ],
+    align=True,
+)
+
+CHANNEL: Final = np.dtype(
+    [
+        ("signal", "i4"),
+        ("delay_ns", "i8"),
+        ("single_event", "u1"),
+        ("level", "u1"),  # behind the input filter
+        ("level_due_ns", "i8"),
+        ("level_next", "u1"),
+        ("input", "u1"),  # as shown in the process image
+        ("status", "u1"),
+        ("latch_pos", "i8"),  # DC ns
+        ("latch_neg", "i8"),
+        ("taken", "u1"),  # single event: bit 0 positive, bit 1 negative edge taken since the last read
+    ],
+    align=True,
+)
+
+EDGE: Final = np.dtype([("at_ns", "i8"), ("signal", "i4"), ("level", "u1")], align=True)
+
+PATH_ROW: Final = np.dtype(
+    [
+        ("state", "u1"),
+        ("head", "i8"),  # number of the running segment
+        ("tail", "i8"),  # number of the next segment to be put
+        ("s", "f8"),  # path done in the running segment, 0.1 um
+        ("v", "f8"),  # path velocity, 0.1 um/s
+        ("override", "f8"),
+        ("hold", "u1"),
+        ("brake", "f8", (2,)),  # deceleration below / above `brake_split` while state is BRAKE
+        ("brake_split", "f8"),
+    ],
+    align=True,
+)
+
+WATCH: Final = np.dtype(
+    [
+        ("kind", "u1"),
+        ("axis", "i4"),
+        ("limit", "f8"),
+        ("window", "f8"),
+        ("mask", "u4"),
+        ("value", "u4"),
+        ("cycles", "i8"),
+        ("count", "i8"),
+        ("fired", "u1"),
+    ],
+    align=True,
+)
+
+LOG: Final = np.dtype(
+    [
+        ("command", "f8"),
+        ("actual", "f8"),
+        ("lag", "f8"),
+        ("target", "i4"),
+        ("position", "i4"),
+        ("following_error", "i4"),
+        ("latch", "i4", (4,)),
+        ("digital_inputs", "u4"),
+        ("controlword", "u2"),
+        ("statusword", "u2"),
+        ("probe_function", "u2"),
+        ("probe_status", "u2"),
+        ("torque_permille", "i2"),
+    ]
+)
+
+
+def segment_dtype(axes: int) -> np.dtype[Any]:
+    """Return the dtype of a path segment for `axes` axes (lengths 0.1 um, velocities 0.1 um/s)."""
+    return np.dtype(
+        [
+            ("length", "f8"),
+            ("feed", "f8"),
+            ("rapid", "u1"),  # the feed override does not act above 100 %
+            ("v_start", "f8"),
+            ("v_end", "f8"),
+            ("acceleration", "f8", (2,)),  # below / above `split`
+            ("deceleration", "f8", (2,)),
+            ("hold", "f8", (2,)),  # deceleration at feedhold
+            ("split", "f8"),
+            ("moves", "u1", (axes,)),
+            ("start", "f8", (axes,)),
+            ("direction", "f8", (axes,)),
+            ("end", "f8", (axes,)),
+        ],
+        align=True,
+    )
+
+
+@dataclass(slots=True)
+class KernelRows:
+    """The kernel's numbers: `axis` (n,), `path` (1,), `segment` (SEGMENTS,), `watch` (m,), `history` (H, n)."""
+
+    axis: Rows
+    path: Rows
+    segment: Rows
+    watch: Rows
+    history: NDArray[np.int64]
+    log: Rows
+
+    @classmethod
+    def allocate(cls, axes: int, watches: int) -> "KernelRows":
+        """Return zeroed rows for `axes` axes and room for `watches` conditions."""
+        rows = cls(
+            axis=np.zeros(axes, AXIS),
+            path=np.zeros(1, PATH_ROW),
+            segment=np.zeros(SEGMENTS, segment_dtype(axes)),
+            watch=np.zeros(watches, WATCH),
+            history=np.zeros((HISTORY_CYCLES, axes), np.int64),
+            log=np.zeros((LOG_CYCLES, axes), LOG),
+        )
+        rows.axis["increments_per_unit"] = 1.0
+        rows.path["override"] = 1.0
+        return rows
+
+
+@dataclass(slots=True)
+class MachineRows:
+    """The machine's numbers: one `servo` row an axis, its switches, signals and terminal channels."""
+
+    servo: Rows
+    switch: Rows
+    signal: Rows
+    channel: Rows
+    edge: Rows
+    edges: NDArray[np.int64]
+    """Shape (1,): how many entries of `edge` are filled."""
+
+    @classmethod
+    def allocate(cls, axes: int, switches: int, signals: int, channels: int) -> "MachineRows":
+        """Return zeroed rows; every wiring index is -1 (not connected)."""
+        rows = cls(
+            servo=np.zeros(axes, SERVO),
+            switch=np.zeros(switches, SWITCH),
+            signal=np.zeros(signals, SIGNAL),
+            channel=np.zeros(channels, CHANNEL),
+            edge=np.zeros(EDGES, EDGE),
+            edges=np.zeros(1, np.int64),
+        )
+        rows.servo["probe_signal"] = -1
+        rows.servo["input_signal"] = -1
+        rows.signal["forced"] = -1
+        rows.channel["signal"] = -1
+        rows.channel["level_due_ns"] = np.iinfo(np.int64).max
+        return rows

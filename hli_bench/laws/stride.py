@@ -1,0 +1,105 @@
+"""A quiet stretch in one call: machine, sense and act, cycle after cycle, until something needs a decision.
+
+A stride can stop in two places within a cycle, and go on from there: behind the machine when a drive raised a
+fault, and behind `sense` when a condition fired. `phase` says where to begin, the result where it stopped.
+"""
+
+from typing import Final
+
+from hli_bench.laws.compiled import law
+from hli_bench.laws.control import act, ask_watches, take_feedback, write_log
+from hli_bench.laws.machine import advance_machine
+from hli_bench.laws.rows import LOG_CYCLES, Rows
+
+MACHINE: Final = 0
+"""Begin of a cycle; as a result: all cycles done."""
+SENSE: Final = 1
+"""Machine has moved, the kernel has not looked yet; as a result: a drive raised a fault."""
+ACT: Final = 2
+"""Kernel has looked, not interpolated yet; as a result: conditions fired, or the caller asked to stop there."""
+
+
+@law
+def exchange_out(axis: Rows, servo: Rows) -> None:
+    """Command telegrams: what the kernel wrote in the last cycle takes effect at the drives."""
+    for number in range(axis.shape[0]):
+        servo[number]["target"] = axis[number]["target"]
+        servo[number]["probe_function"] = axis[number]["probe_function"]
+
+
+@law
+def exchange_in(axis: Rows, servo: Rows) -> None:
+    """Actual value telegrams: what the drives captured at SYNC reaches the kernel (positions: `sense`)."""
+    for number in range(axis.shape[0]):
+        kernel = axis[number]
+        drive = servo[number]
+        kernel["statusword"] = (kernel["statusword"] & 0xC3FF) | drive["status_flags"]
+        kernel["probe_status"] = drive["probe_status"]
+        kernel["digital_inputs"] = drive["digital_inputs"]
+        kernel["torque_permille"] = drive["torque_permille"]
+        kernel["following_error"] = drive["following_error"]
+        for i in range(4):
+            kernel["latch"][i] = drive["latch"][i]
+
+
+@law
+def stride(
+    axis: Rows,
+    path: Rows,
+    segment: Rows,
+    watch: Rows,
+    history: Rows,
+    log: Rows,
+    servo: Rows,
+    switch: Rows,
+    signal: Rows,
+    channel: Rows,
+    edge: Rows,
+    edges: Rows,
+    pending: Rows,
+    cycle: int,
+    cycles: int,
+    phase: int,
+    stop_to_act: int,
+    cycle_ns: int,
+    sub_steps: int,
+    dc_epoch_ns: int,
+) -> tuple[int, int]:
+    """Run up to `cycles` cycles; cycle `cycle` is the first. Return (cycles completed, where it stopped).
+
+    With `stop_to_act` the first cycle is left behind `sense`, so that the caller can decide before `act`.
+    """
+    for done in range(cycles):
+        if phase == MACHINE:
+            exchange_out(axis, servo)
+            begin_ns = (cycle - 1) * cycle_ns
+            faults = advance_machine(
+                servo,
+                switch,
+                signal,
+                channel,
+                edge,
+                edges,
+                pending,
+                begin_ns,
+                cycle_ns,
+                sub_steps,
+                dc_epoch_ns,
+            )
+            exchange_in(axis, servo)
+            phase = SENSE
+            if faults:
+                return done, SENSE
+        if phase == SENSE:
+            for number in range(axis.shape[0]):
+                take_feedback(axis, history, number, servo[number]["position"], cycle)
+            phase = ACT
+            if ask_watches(axis, path, watch, history, cycle) or stop_to_act:
+                return done, ACT
+        act(axis, path, segment, cycle_ns)
+        write_log(axis, log, cycle % LOG_CYCLES)
+        phase = MACHINE
+        cycle += 1
+        if edges[0] > edge.shape[0] // 2:
+            return done + 1, MACHINE
+    return cycles, MACHINE

@@ -1,0 +1,1 @@
+"""How nodes are stepped through time: schedule, lock-step, trace. Knows no node by name."""

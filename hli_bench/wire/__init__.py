@@ -1,0 +1,1 @@
+"""Frozen messages between nodes: CAN frames, process images, HLI elements, signal edges. No behaviour."""

@@ -1,0 +1,89 @@
+"""What the documents tell a reader to type exists, and their links lead somewhere."""
+
+import functools
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")])
+DECISIONS = sorted((ROOT / "docs" / "decisions").glob("*.md"))
+
+BLOCK = re.compile(r"^```console\n(.*?)^```", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\]\((?!https?://|#)([^)#\s]+)")
+PROMPT = "$ "
+CLI = "import sys; from hli_bench.cli.main import main; sys.exit(main())"
+
+
+def _commands(tool: str) -> list[tuple[str, ...]]:
+    """The words after `tool` in every line of a console block that starts with the prompt and that tool."""
+    lines = [
+        line.removeprefix(PROMPT)
+        for document in DOCUMENTS
+        for block in BLOCK.findall(document.read_text(encoding="utf-8"))
+        for line in block.replace("\\\n", " ").splitlines()
+        if line.startswith(PROMPT)
+    ]
+    split = [shlex.split(line, comments=True) for line in lines]
+    return sorted({tuple(words[1:]) for words in split if words and Path(words[0]).name == tool})
+
+
+@functools.cache
+def _help(*words: str) -> str:
+    run = subprocess.run(
+        [sys.executable, "-c", CLI, *words, "--help"], capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0, f"hli-bench {' '.join(words)}: {run.stderr}"
+    return run.stdout
+
+
+def _offers(text: str, word: str) -> bool:
+    """Whether a help text lists `word` as one of its commands or options."""
+    return re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", text) is not None
+
+
+def _make_targets() -> set[str]:
+    return set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+
+
+def test_the_documents_show_commands() -> None:
+    assert ("run",) in _commands("make")
+    assert ("test",) in _commands("make")
+    assert _commands("hli-bench")
+
+
+@pytest.mark.parametrize("words", _commands("make"), ids=" ".join)
+def test_a_make_target_that_is_shown_exists(words: tuple[str, ...]) -> None:
+    targets = {word for word in words if "=" not in word}
+    assert targets <= _make_targets()
+
+
+@pytest.mark.parametrize("words", _commands("hli-bench"), ids=" ".join)
+def test_a_command_that_is_shown_exists_with_its_options(words: tuple[str, ...]) -> None:
+    path = words[:1]
+    assert _offers(_help(), path[0])
+    nested = re.search(r"\{([\w,-]+)\}", _help(*path))
+    if nested and len(words) > 1 and words[1] in nested[1].split(","):
+        path = words[:2]
+    options = [word.partition("=")[0] for word in words if word.startswith("--")]
+    assert not [option for option in options if not _offers(_help(*path), option)]
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda document: str(document.relative_to(ROOT)))
+def test_the_links_of_a_document_lead_somewhere(document: Path) -> None:
+    links = LINK.findall(document.read_text(encoding="utf-8"))
+    assert not [link for link in links if not (document.parent / link).exists()]
+
+
+@pytest.mark.parametrize("decision", DECISIONS, ids=lambda decision: decision.stem)
+def test_a_decision_says_context_decision_and_consequence(decision: Path) -> None:
+    headings = re.findall(r"^## (\w+)", decision.read_text(encoding="utf-8"), re.MULTILINE)
+    assert headings == ["Context", "Decision", "Consequence"]
+
+
+def test_decisions_are_numbered_without_a_gap() -> None:
+    assert [int(decision.stem[:4]) for decision in DECISIONS] == list(range(1, len(DECISIONS) + 1))

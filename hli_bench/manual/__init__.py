@@ -1,0 +1,1 @@
+"""The manuals as tables: parameters, errors, NC variables, HLI elements. Data and checks, no behaviour."""

@@ -1,0 +1,1 @@
+"""Sans-IO protocols (CANopen, HLI, Modbus): frames in, frames out, time as an argument; mutually unaware."""

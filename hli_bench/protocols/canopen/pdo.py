@@ -1,0 +1,351 @@
+"""Process data objects (CiA 301): parameters, remapping, transmission types, packing plans."""
+
+import struct
+from dataclasses import dataclass
+from typing import Final
+
+from hli_bench.base.errors import InputError
+from hli_bench.base.time import NS_PER_MS, NS_PER_US, Ns
+from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
+from hli_bench.protocols.canopen.datatypes import STRUCT_CODES, DataType, Value, integer_range, size_of
+from hli_bench.protocols.canopen.dictionary import ObjectValues
+from hli_bench.protocols.canopen.eds import Entry
+from hli_bench.wire.can import CanFrame
+
+RPDO_COMMUNICATION: Final = range(0x1400, 0x1600)
+TPDO_COMMUNICATION: Final = range(0x1800, 0x1A00)
+MAPPING_OFFSET: Final = 0x200
+MAX_ENTRIES: Final = 8
+MAX_BYTES: Final = 8
+
+INVALID: Final = 1 << 31
+"""COB-ID bit: the PDO does not exist."""
+NO_RTR: Final = 1 << 30
+"""COB-ID bit of a TPDO: remote frames are not answered."""
+_EXTENDED: Final = 1 << 29
+_COB_ID_MASK: Final = 0x7FF
+
+SYNCHRONOUS: Final = range(241)
+ON_EVENT: Final = (254, 255)
+_INHIBIT_NS: Final = 100 * NS_PER_US
+
+_COB_ID, _TYPE, _INHIBIT, _EVENT_TIMER = 1, 2, 3, 5
+_RESTRICTED: Final = (
+    range(0x081),
+    range(0x101, 0x181),
+    range(0x581, 0x600),
+    range(0x601, 0x680),
+    range(0x6E0, 0x800),
+)
+"""Identifiers that no PDO may take (NMT, SYNC, SDO, error control and reserved ones)."""
+
+Signature = tuple[int, int, tuple[int, ...]]
+"""COB-ID with its bits, transmission type, mapping entries."""
+
+
+@dataclass(frozen=True, slots=True)
+class PdoPlan:
+    """How a mapping packs into bytes, computed once per mapping; `entries` are the real objects in order."""
+
+    mapping: tuple[int, ...]
+    entries: tuple[Entry, ...]
+    codec: struct.Struct
+
+    def pack(self, values: ObjectValues) -> bytes:
+        """Return the present values of all mapped objects as PDO data."""
+        return self.codec.pack(*[values.get(entry.index, entry.subindex) for entry in self.entries])
+
+    def unpack(self, data: bytes) -> tuple[Value, ...]:
+        """Return the values of the mapped objects; `data` has at least the plan's length."""
+        return self.codec.unpack_from(data)
+
+
+def make_plan(values: ObjectValues, mapping: tuple[int, ...], *, sending: bool) -> PdoPlan:
+    """Return the plan of mapping entries (index<<16 | subindex<<8 | bits). Raises SdoAbort.
+
+    Mapping is byte-granular: objects of one bit cannot be mapped (decided here).
+    """
+    codes = ["<"]
+    entries = []
+    for word in mapping:
+        entry = mapped_entry(values, word, sending=sending)
+        if entry is None:
+            codes.append(f"{(word & 0xFF) // 8}x")
+        else:
+            codes.append(STRUCT_CODES[entry.data_type])
+            entries.append(entry)
+    codec = struct.Struct("".join(codes))
+    if codec.size > MAX_BYTES:
+        raise SdoAbort(AbortCode.PDO_LENGTH)
+    return PdoPlan(mapping, tuple(entries), codec)
+
+
+def mapped_entry(values: ObjectValues, word: int, *, sending: bool) -> Entry | None:
+    """Return the object of a mapping entry, None for a dummy of an RPDO. Raises SdoAbort."""
+    index, subindex, bits = word >> 16, word >> 8 & 0xFF, word & 0xFF
+    if index < 0x20 and not sending:
+        _check_dummy(index, subindex, bits)
+        return None
+    entry = values.entry(index, subindex)
+    size = size_of(entry.data_type)
+    allowed = entry.access.readable if sending else entry.access.writable
+    whole_bytes = size is not None and entry.data_type is not DataType.BOOLEAN and bits == 8 * size
+    if not (entry.pdo_mappable and allowed and whole_bytes):
+        raise SdoAbort(AbortCode.NOT_MAPPABLE)
+    return entry
+
+
+def _check_dummy(index: int, subindex: int, bits: int) -> None:
+    """Check a dummy entry: index is an integer type's code and takes its place in the RPDO."""
+    known = {int(kind) for kind in DataType if kind is not DataType.BOOLEAN and integer_range(kind)}
+    if index not in known or subindex or bits != 8 * (size_of(DataType(index)) or 0):
+        raise SdoAbort(AbortCode.NOT_MAPPABLE)
+
+
+class _Pdo:
+    """Parameters of one PDO and the rules by which they may change."""
+
+    __slots__ = (
+        "_communication",
+        "_mapping",
+        "_values",
+        "changes",
+        "cob_word",
+        "plan",
+        "sending",
+        "transmission",
+    )
+
+    def __init__(self, values: ObjectValues, communication: int, *, sending: bool) -> None:
+        self._values = values
+        self._communication = communication
+        self._mapping = communication + MAPPING_OFFSET
+        self.sending = sending
+        self.changes = 0
+        self._hook()
+        self.reload()
+
+    @property
+    def cob_id(self) -> int:
+        """The 11-bit identifier."""
+        return self.cob_word & _COB_ID_MASK
+
+    @property
+    def valid(self) -> bool:
+        """Whether the PDO exists."""
+        return not self.cob_word & INVALID
+
+    @property
+    def signature(self) -> Signature:
+        """What decides the bytes and the moment of this PDO."""
+        return self.cob_word, self.transmission, self.plan.mapping
+
+    def reload(self) -> None:
+        """Take over the values of the dictionary after power-on or reset. Raises InputError (broken EDS)."""
+        self.cob_word = self._values.number(self._communication, _COB_ID)
+        self.transmission = self._values.number(self._communication, _TYPE)
+        count = self._values.number(self._mapping, 0)
+        try:
+            self.plan = make_plan(self._values, self._entries(count), sending=self.sending)
+        except SdoAbort as abort:
+            raise InputError(f"default mapping of 0x{self._mapping:04X}: {abort}") from abort
+        self.changes += 1
+
+    def _hook(self) -> None:
+        communication, mapping = self._communication, self._mapping
+        self._values.on_write(communication, _COB_ID, self._write_cob_id)
+        self._values.on_write(communication, _TYPE, self._write_type)
+        if self._values.has(communication, _INHIBIT):
+            self._values.on_write(communication, _INHIBIT, self._write_inhibit)
+        self._values.on_write(mapping, 0, self._write_count)
+        for subindex in range(1, MAX_ENTRIES + 1):
+            if self._values.has(mapping, subindex):
+                self._values.on_write(mapping, subindex, self._write_entry)
+
+    def _entries(self, count: int) -> tuple[int, ...]:
+        return tuple(self._values.number(self._mapping, subindex) for subindex in range(1, count + 1))
+
+    def _write_cob_id(self, value: Value) -> None:
+        word = int(value)
+        identifier = word & _COB_ID_MASK
+        if word & _EXTENDED or word & 0x1FFFF800:
+            raise SdoAbort(AbortCode.RANGE)
+        if not word & INVALID:
+            if any(identifier in restricted for restricted in _RESTRICTED):
+                raise SdoAbort(AbortCode.RANGE)
+            if self.valid and identifier != self.cob_id:
+                raise SdoAbort(AbortCode.RANGE)
+        self.cob_word = word
+        self.changes += 1
+
+    def _write_type(self, value: Value) -> None:
+        if int(value) not in SYNCHRONOUS and int(value) not in ON_EVENT:
+            raise SdoAbort(AbortCode.RANGE)
+        self.transmission = int(value)
+        self.changes += 1
+
+    def _write_inhibit(self, value: Value) -> None:
+        """Refuse a change while the PDO exists."""
+        if self.valid and int(value) != self._values.number(self._communication, _INHIBIT):
+            raise SdoAbort(AbortCode.UNSUPPORTED_ACCESS)
+
+    def _write_count(self, value: Value) -> None:
+        """Activate that many entries after a check; only while the PDO is invalid."""
+        count = int(value)
+        if self.valid:
+            raise SdoAbort(AbortCode.UNSUPPORTED_ACCESS)
+        if count > MAX_ENTRIES or (count and not self._values.has(self._mapping, count)):
+            raise SdoAbort(AbortCode.PDO_LENGTH)
+        self.plan = make_plan(self._values, self._entries(count), sending=self.sending)
+        self.changes += 1
+
+    def _write_entry(self, value: Value) -> None:
+        """Check an entry; it changes only while the PDO is invalid and the count is 0; 0 clears it."""
+        if self.valid or self._values.number(self._mapping, 0):
+            raise SdoAbort(AbortCode.UNSUPPORTED_ACCESS)
+        if value:
+            mapped_entry(self._values, int(value), sending=self.sending)
+
+
+class Rpdo(_Pdo):
+    """A PDO that this node receives."""
+
+    __slots__ = ("_received",)
+
+    def __init__(self, values: ObjectValues, communication: int) -> None:
+        self._received: bytes | None = None
+        super().__init__(values, communication, sending=False)
+
+    def receive(self, data: bytes) -> bool:
+        """Take data, effective now or, for synchronous types, at the next SYNC. False: too short."""
+        if len(data) < self.plan.codec.size:
+            return False
+        if self.transmission in SYNCHRONOUS:
+            self._received = data
+        else:
+            self._apply(data)
+        return True
+
+    def on_sync(self) -> None:
+        """Let data received since the last SYNC take effect."""
+        if self._received is not None:
+            data, self._received = self._received, None
+            self._apply(data)
+
+    def forget(self) -> None:
+        """Drop data that wait for a SYNC."""
+        self._received = None
+
+    def _apply(self, data: bytes) -> None:
+        """Store all values; one that its object refuses is left out (decided here: a PDO has no abort)."""
+        for entry, value in zip(self.plan.entries, self.plan.unpack(data), strict=True):
+            try:
+                self._values.receive(entry, value)
+            except SdoAbort:
+                continue
+
+
+class Tpdo(_Pdo):
+    """A PDO that this node sends."""
+
+    __slots__ = ("_sent_at", "_sent_data", "_syncs")
+
+    def __init__(self, values: ObjectValues, communication: int) -> None:
+        self._sent_at: Ns | None = None
+        self._sent_data: bytes | None = None
+        self._syncs = 0
+        super().__init__(values, communication, sending=True)
+
+    def start(self) -> None:
+        """Begin anew, on entering OPERATIONAL."""
+        self._sent_at = None
+        self._sent_data = None
+        self._syncs = 0
+
+    def on_sync(self, now: Ns) -> CanFrame | None:
+        """Return the frame due at this SYNC: every n-th for types 1..240, after a change for type 0."""
+        if not self.valid or self.transmission not in SYNCHRONOUS:
+            return None
+        if self.transmission == 0:
+            data = self.plan.pack(self._values)
+            return None if data == self._sent_data else self._send(data, now)
+        self._syncs += 1
+        if self._syncs < self.transmission:
+            return None
+        self._syncs = 0
+        return self._send(self.plan.pack(self._values), now)
+
+    def tick(self, now: Ns) -> CanFrame | None:
+        """Return the frame due by event (a mapped value changed) or timer, after the inhibit time."""
+        if not self.valid or self.transmission not in ON_EVENT or not self.plan.entries:
+            return None
+        data = self.plan.pack(self._values)
+        timer = self._timer_due()
+        if data == self._sent_data and (timer is None or now < timer):
+            return None
+        return None if now < self._inhibited_until() else self._send(data, now)
+
+    def on_remote(self, now: Ns) -> CanFrame | None:
+        """Return the answer to a remote frame, None where bit 30 of the COB-ID forbids it."""
+        if not self.valid or self.cob_word & NO_RTR:
+            return None
+        return self._send(self.plan.pack(self._values), now)
+
+    def next_due(self) -> Ns | None:
+        """Return when the event timer or the end of the inhibit time makes `tick` send at the latest."""
+        if not self.valid or self.transmission not in ON_EVENT or self._sent_at is None:
+            return None
+        timer = self._timer_due()
+        if self.plan.pack(self._values) != self._sent_data:
+            return self._inhibited_until()
+        return None if timer is None else max(timer, self._inhibited_until())
+
+    def _timer_due(self) -> Ns | None:
+        timer_ms = self._optional(_EVENT_TIMER)
+        return None if not timer_ms or self._sent_at is None else Ns(self._sent_at + timer_ms * NS_PER_MS)
+
+    def _inhibited_until(self) -> Ns:
+        return Ns(0) if self._sent_at is None else Ns(self._sent_at + self._optional(_INHIBIT) * _INHIBIT_NS)
+
+    def _optional(self, subindex: int) -> int:
+        has = self._values.has(self._communication, subindex)
+        return self._values.number(self._communication, subindex) if has else 0
+
+    def _send(self, data: bytes, now: Ns) -> CanFrame:
+        self._sent_at = now
+        self._sent_data = data
+        return CanFrame(self.cob_id, data)
+
+
+class PdoSet:
+    """All PDOs of a node, in the order of their numbers."""
+
+    __slots__ = ("rpdos", "tpdos")
+
+    def __init__(self, values: ObjectValues) -> None:
+        indices = sorted(values.description.names)
+        self.rpdos = tuple(Rpdo(values, index) for index in indices if index in RPDO_COMMUNICATION)
+        self.tpdos = tuple(Tpdo(values, index) for index in indices if index in TPDO_COMMUNICATION)
+
+    @property
+    def changes(self) -> int:
+        """Grows with every change of a PDO parameter."""
+        return sum(pdo.changes for pdo in (*self.rpdos, *self.tpdos))
+
+    @property
+    def signature(self) -> tuple[Signature, ...]:
+        """The signatures of all RPDOs, then of all TPDOs."""
+        return tuple(pdo.signature for pdo in (*self.rpdos, *self.tpdos))
+
+    def reload(self) -> None:
+        """Take over the dictionary's values after a reset."""
+        for pdo in (*self.rpdos, *self.tpdos):
+            pdo.reload()
+        self.start()
+
+    def start(self) -> None:
+        """Begin anew, on entering OPERATIONAL."""
+        for rpdo in self.rpdos:
+            rpdo.forget()
+        for tpdo in self.tpdos:
+            tpdo.start()

@@ -64,7 +64,7 @@ def cores() -> Finding:
         "cores",
         count >= 2,
         f"{count} usable",
-        "Give the bench two cores or run it in free pace: on one, a paced bench and its PLC hinder each other.",
+        "Give the bench two cores or run it in free pace: a paced bench and its PLC share badly.",
     )
 
 

@@ -14,6 +14,7 @@ DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").
 DECISIONS = sorted((ROOT / "docs" / "decisions").glob("*.md"))
 
 BLOCK = re.compile(r"^```console\n(.*?)^```", re.MULTILINE | re.DOTALL)
+EXAMPLE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\((?!https?://|#)([^)#\s]+)")
 PROMPT = "$ "
 CLI = "import sys; from hli_bench.cli.main import main; sys.exit(main())"
@@ -30,6 +31,10 @@ def _commands(tool: str) -> list[tuple[str, ...]]:
     ]
     split = [shlex.split(line, comments=True) for line in lines]
     return sorted({tuple(words[1:]) for words in split if words and Path(words[0]).name == tool})
+
+
+def _examples(document: Path) -> list[str]:
+    return EXAMPLE.findall(document.read_text(encoding="utf-8"))
 
 
 @functools.cache
@@ -71,6 +76,11 @@ def test_a_command_that_is_shown_exists_with_its_options(words: tuple[str, ...])
         path = words[:2]
     options = [word.partition("=")[0] for word in words if word.startswith("--")]
     assert not [option for option in options if not _offers(_help(*path), option)]
+
+
+@pytest.mark.parametrize("example", _examples(ROOT / "README.md"), ids=lambda text: text.splitlines()[0])
+def test_the_examples_of_the_readme_run(example: str) -> None:
+    exec(compile(example, "README.md", "exec"), {})
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda document: str(document.relative_to(ROOT)))

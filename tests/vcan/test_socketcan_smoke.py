@@ -19,7 +19,8 @@ with can.Bus("vcan0", interface="socketcan") as bus:
     for frame in bus:
         if frame.dlc == 0:
             break
-        bus.send(can.Message(arbitration_id=frame.arbitration_id + 1, data=frame.data[::-1], is_extended_id=False))
+        answer = frame.data[::-1]
+        bus.send(can.Message(arbitration_id=frame.arbitration_id + 1, data=answer, is_extended_id=False))
 """
 
 

@@ -1,0 +1,195 @@
+"""#MEAS MODE, #MEAS [...], #MEAS DEFAULT: type and probing parameters (measurement manual, chapter 3)."""
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from hli_bench.kernel.blocks import MeasureSettings
+from hli_bench.kernel.decoder import faults
+from hli_bench.kernel.decoder.configuration import DecoderAxis
+from hli_bench.kernel.decoder.context import Context, Steps
+from hli_bench.kernel.decoder.expressions import evaluate
+from hli_bench.kernel.decoder.faults import CncStop
+from hli_bench.kernel.decoder.keywords import Keyword, Kind, axis_of, keywords
+from hli_bench.kernel.decoder.text import Scanner
+from hli_bench.kernel.decoder.variables import Variables
+
+if TYPE_CHECKING:
+    from hli_bench.base.ids import AxisIndex
+
+_WORD = re.compile(r"[A-Z]+", re.IGNORECASE)
+_KEYS: dict[str, Kind] = {
+    "TYPE": "value",
+    "ERR_NO_SIGNAL": "value",
+    "SIMU_OFFSET": "value",
+    "TRIGGER": "flag",
+    "AX": "word",
+    "AXNR": "value",
+    "SIGNAL": "word",
+    "EDGE": "word",
+    "INPUT": "value",
+    "G107": "flag",
+    "G108": "flag",
+}
+_AXIS_KEYS: dict[str, Kind] = {"AX": "word", "AXNR": "value"}
+_NOT_BUILT: Final = {
+    "SIMU_OFFSET": "offset of the measuring simulation",
+    "TRIGGER": "edge banding",
+    "G107": "edge banding",
+    "G108": "edge banding",
+}
+SIGNALS: Final = (
+    "DRIVE_TYPE_DEFAULT",
+    "PLC",
+    "FIXED_STOP",
+    "DRIVE",
+    "PLC_EXT_LATCH_CONTROL",
+    "PLC_FIRST_EVENT",
+    "PLC_TIMESTAMP",
+    "EXT_PROBE_WITH_DRIVE",
+)
+"""Values of P-AXIS-00516 that SIGNAL= takes."""
+
+MAX_TYPE: Final = 8
+
+
+@dataclass(slots=True)
+class _Group:
+    """Keywords that belong to one axis."""
+
+    axis: DecoderAxis | None = None
+    seen: dict[str, Keyword] = field(default_factory=dict)
+
+
+def run(context: Context, memory: Variables, scanner: Scanner) -> Steps:
+    """Set the type, or yield the settings that the position controller takes."""
+    found = scanner.match(_WORD)
+    word = found.group().upper() if found else ""
+    match word:
+        case "MODE":
+            _mode(context, memory, scanner)
+        case "DEFAULT":
+            yield from _default(context, memory, scanner)
+        case "":
+            yield from _settings(context, memory, scanner)
+        case "ON" | "OFF" | "PREPARE":
+            raise scanner.not_emulated(f"#MEAS {word}: preparation and runs over several blocks")
+        case _:
+            raise scanner.error(f"expected MODE, DEFAULT or '[' after #MEAS, found '{word}'")
+
+
+def _mode(context: Context, memory: Variables, scanner: Scanner) -> None:
+    if scanner.at_end():
+        context.measuring_type = context.defaults.measuring_type
+        return
+    scanner.expect("[")
+    if scanner.accept("]"):
+        context.measuring_type = context.defaults.measuring_type
+        return
+    value = evaluate(scanner, memory)
+    scanner.expect("]")
+    _set_type(context, scanner, value)
+
+
+def _set_type(context: Context, scanner: Scanner, value: float) -> None:
+    if value != int(value) or not 1 <= value <= MAX_TYPE:
+        raise CncStop(faults.TYPE_OUT_OF_RANGE, scanner.block.source, values={"type": value})
+    if value == MAX_TYPE:
+        raise scanner.not_emulated("measurement type 8: edge banding over several blocks")
+    context.measuring_type = int(value)
+
+
+def _default(context: Context, memory: Variables, scanner: Scanner) -> Steps:
+    axes: list[AxisIndex | None] = []
+    if scanner.peek() == "[":
+        axes += [axis_of(scanner, context, key).index for key in keywords(scanner, memory, _AXIS_KEYS)]
+    for axis in axes or [None]:
+        yield MeasureSettings(
+            source=scanner.block.source,
+            axis=axis,
+            signal=None,
+            edge=None,
+            input=None,
+            error_no_signal=None,
+            reset=True,
+        )
+
+
+def _settings(context: Context, memory: Variables, scanner: Scanner) -> Steps:
+    groups = [_Group()]
+    for keyword in keywords(scanner, memory, _KEYS):
+        if keyword.name in _NOT_BUILT:
+            raise scanner.not_emulated(f"#MEAS {keyword.name}: {_NOT_BUILT[keyword.name]}", keyword.at)
+        if keyword.name in ("AX", "AXNR"):
+            axis = axis_of(scanner, context, keyword)
+            if not axis.measuring:
+                raise CncStop(faults.NOT_A_MEASUREMENT_AXIS, scanner.block.source, axis=axis.name)
+            groups.append(_Group(axis))
+        elif keyword.name in groups[-1].seen:
+            raise CncStop(faults.KEYWORD_TWICE, scanner.block.source, values={"keyword": keyword.name})
+        else:
+            groups[-1].seen[keyword.name] = keyword
+    yield from _general(context, scanner, groups)
+    for group in groups:
+        if group.seen:
+            yield _block(scanner, group)
+
+
+def _general(context: Context, scanner: Scanner, groups: list[_Group]) -> Steps:
+    """Take TYPE and ERR_NO_SIGNAL, which belong to no axis.
+
+    TYPE without ERR_NO_SIGNAL asks for the error (the keyword's default, decided here).
+    """
+    wanted: bool | None = None
+    for group in groups:
+        if (keyword := group.seen.pop("TYPE", None)) is not None:
+            _set_type(context, scanner, keyword.value)
+            wanted = True if wanted is None else wanted
+        if (keyword := group.seen.pop("ERR_NO_SIGNAL", None)) is not None:
+            wanted = bool(_whole(scanner, keyword, 0, 1))
+    if wanted is not None:
+        yield MeasureSettings(
+            source=scanner.block.source,
+            axis=None,
+            signal=None,
+            edge=None,
+            input=None,
+            error_no_signal=wanted,
+            reset=False,
+        )
+
+
+def _block(scanner: Scanner, group: _Group) -> MeasureSettings:
+    seen = group.seen
+    if group.axis is None:
+        first = next(iter(seen.values()))
+        raise scanner.error(f"expected AX= or AXNR= before {first.name}", first.at)
+    return MeasureSettings(
+        source=scanner.block.source,
+        axis=group.axis.index,
+        signal=_one_of(scanner, seen.get("SIGNAL"), SIGNALS),
+        edge=_one_of(scanner, seen.get("EDGE"), ("POS", "NEG")),
+        input=_whole(scanner, seen.get("INPUT"), 1, 255),
+        error_no_signal=None,
+        reset=False,
+    )
+
+
+def _one_of(scanner: Scanner, keyword: Keyword | None, allowed: tuple[str, ...]) -> str | None:
+    if keyword is None:
+        return None
+    if keyword.word.upper() not in allowed:
+        raise scanner.error(
+            f"{keyword.name}={keyword.word}: expected one of {', '.join(allowed)}", keyword.at
+        )
+    return keyword.word.upper()
+
+
+def _whole(scanner: Scanner, keyword: Keyword | None, low: int, high: int) -> int | None:
+    if keyword is None:
+        return None
+    if keyword.value != int(keyword.value) or not low <= keyword.value <= high:
+        raise scanner.error(
+            f"{keyword.name}={keyword.value:g}: expected a whole number from {low} to {high}", keyword.at
+        )
+    return int(keyword.value)

@@ -1,0 +1,205 @@
+"""Expressions of the NC language, evaluated while they are read; angles in degrees."""
+
+import math
+import re
+from collections.abc import Callable
+from typing import Final, Protocol
+
+from hli_bench.kernel.decoder.text import Scanner
+
+MAX_DEPTH: Final = 64
+"""Nested brackets of one expression, decided here."""
+
+_NUMBER = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
+_WORD = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
+_OR = re.compile(r"\|\||OR\b", re.IGNORECASE)
+_AND = re.compile(r"&&|AND\b", re.IGNORECASE)
+_COMPARE = re.compile(r"==|!=|<>|<=|>=|<|>")
+_COMPARE_IN_CONDITION = re.compile(r"==|!=|<>|<=|>=|<|>|=")
+_ADD = re.compile(r"[+-]")
+_MULTIPLY = re.compile(r"\*(?!\*)|/|MOD\b", re.IGNORECASE)
+_MEMORY = re.compile(r"V\.|PP[0-9\[]|P[0-9\[]|P{2,}[0-9]", re.IGNORECASE)
+_CONSTANTS: Final = {"TRUE": 1.0, "FALSE": 0.0, "PI": math.pi}
+
+
+class Memory(Protocol):
+    """Reads the parameter or variable that stands at the scanner."""
+
+    def read(self, scanner: Scanner) -> float:
+        """Take the name at the scanner and return its value."""
+
+
+def sine(degrees: float) -> float:
+    """Return the sine, exact at multiples of 90 degrees."""
+    quarter, rest = divmod(degrees, 90.0)
+    if rest == 0.0:
+        return (0.0, 1.0, 0.0, -1.0)[int(quarter) % 4]
+    return math.sin(math.radians(degrees))
+
+
+def cosine(degrees: float) -> float:
+    """Return the cosine, exact at multiples of 90 degrees."""
+    quarter, rest = divmod(degrees, 90.0)
+    if rest == 0.0:
+        return (1.0, 0.0, -1.0, 0.0)[int(quarter) % 4]
+    return math.cos(math.radians(degrees))
+
+
+def _round(value: float) -> float:
+    return math.copysign(math.floor(abs(value) + 0.5), value)
+
+
+FUNCTIONS: Final[dict[str, Callable[[float], float]]] = {
+    "SIN": sine,
+    "COS": cosine,
+    "TAN": lambda x: sine(x) / cosine(x),
+    "ASIN": lambda x: math.degrees(math.asin(x)),
+    "ACOS": lambda x: math.degrees(math.acos(x)),
+    "ATAN": lambda x: math.degrees(math.atan(x)),
+    "SQRT": math.sqrt,
+    "SQR": lambda x: x * x,
+    "ABS": abs,
+    "ROUND": _round,
+    "FIX": math.floor,
+    "FUP": math.ceil,
+    "EXP": math.exp,
+    "LN": math.log,
+    "NOT": lambda x: float(not is_true(x)),
+}
+"""Functions of one argument in '[ ]'; ROUND takes halves away from zero (decided here)."""
+
+_COMPARISONS: Final[dict[str, Callable[[float, float], bool]]] = {
+    "==": lambda a, b: a == b,
+    "=": lambda a, b: a == b,
+    "!=": lambda a, b: a != b,
+    "<>": lambda a, b: a != b,
+    "<": lambda a, b: a < b,
+    ">": lambda a, b: a > b,
+    "<=": lambda a, b: a <= b,
+    ">=": lambda a, b: a >= b,
+}
+
+
+def is_true(value: float) -> bool:
+    """Tell whether a condition holds: its amount is at least 0.5 (NC conditions)."""
+    return abs(value) >= 0.5
+
+
+def evaluate(scanner: Scanner, memory: Memory, *, condition: bool = False) -> float:
+    """Take an expression and return its value; in a condition '=' compares."""
+    start = scanner.pos
+    try:
+        value = float(_Evaluation(scanner, memory, condition=condition).disjunction())
+    except (ZeroDivisionError, OverflowError, ValueError) as problem:
+        raise scanner.error(f"expression cannot be computed: {problem}", start) from None
+    if not math.isfinite(value):
+        raise scanner.error("expression cannot be computed: the value is too large", start)
+    return value
+
+
+class _Evaluation:
+    """One run over an expression, from the loosest binding operator down."""
+
+    __slots__ = ("_compare", "_depth", "_memory", "_scanner")
+
+    def __init__(self, scanner: Scanner, memory: Memory, *, condition: bool) -> None:
+        self._scanner = scanner
+        self._memory = memory
+        self._compare = _COMPARE_IN_CONDITION if condition else _COMPARE
+        self._depth = 0
+
+    def disjunction(self) -> float:
+        value = self._conjunction()
+        while self._scanner.match(_OR):
+            right = self._conjunction()
+            value = float(is_true(value) or is_true(right))
+        return value
+
+    def _conjunction(self) -> float:
+        value = self._comparison()
+        while self._scanner.match(_AND):
+            right = self._comparison()
+            value = float(is_true(value) and is_true(right))
+        return value
+
+    def _comparison(self) -> float:
+        value = self._sum()
+        while found := self._scanner.match(self._compare):
+            value = float(_COMPARISONS[found.group()](value, self._sum()))
+        return value
+
+    def _sum(self) -> float:
+        value = self._product()
+        while found := self._scanner.match(_ADD):
+            right = self._product()
+            value = value + right if found.group() == "+" else value - right
+        return value
+
+    def _product(self) -> float:
+        value = self._signed()
+        while found := self._scanner.match(_MULTIPLY):
+            right = self._signed()
+            if found.group() == "*":
+                value *= right
+            elif found.group() == "/":
+                value /= right
+            else:
+                value = math.fmod(value, right)
+        return value
+
+    def _signed(self) -> float:
+        negative = False
+        while found := self._scanner.match(_ADD):
+            negative ^= found.group() == "-"
+        value = self._power()
+        return -value if negative else value
+
+    def _power(self) -> float:
+        value = self._operand()
+        if not self._scanner.accept("**"):
+            return value
+        self._deeper()
+        exponent = self._signed()
+        self._depth -= 1
+        return math.pow(value, exponent)
+
+    def _operand(self) -> float:
+        scanner = self._scanner
+        if number := scanner.match(_NUMBER):
+            return float(number.group())
+        if scanner.peek() == "[":
+            return self._bracket()
+        if scanner.accept("!"):
+            self._deeper()
+            value = float(not is_true(self._operand()))
+            self._depth -= 1
+            return value
+        if _MEMORY.match(scanner.text, scanner.pos):
+            return self._memory.read(scanner)
+        return self._function()
+
+    def _bracket(self) -> float:
+        self._deeper()
+        self._scanner.expect("[")
+        value = self.disjunction()
+        self._scanner.expect("]")
+        self._depth -= 1
+        return value
+
+    def _function(self) -> float:
+        scanner = self._scanner
+        word = scanner.match(_WORD)
+        if word is None:
+            raise scanner.error(f"expected a number, a parameter or '[', found {scanner.found()}")
+        name = word.group().upper()
+        if name in _CONSTANTS:
+            return _CONSTANTS[name]
+        if name not in FUNCTIONS:
+            known = ", ".join(FUNCTIONS)
+            raise scanner.error(f"expected a number or a function ({known}), found '{name}'", word.start())
+        return float(FUNCTIONS[name](self._bracket()))
+
+    def _deeper(self) -> None:
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            raise self._scanner.error(f"expected at most {MAX_DEPTH} nested brackets")

@@ -1,0 +1,229 @@
+"""P parameters and V. variables: reading them in expressions, writing them in assignments."""
+
+import re
+from typing import Final
+
+from hli_bench.base.ids import AxisIndex
+from hli_bench.kernel.decoder import faults
+from hli_bench.kernel.decoder.context import Context
+from hli_bench.kernel.decoder.coordinates import rounded
+from hli_bench.kernel.decoder.expressions import evaluate
+from hli_bench.kernel.decoder.faults import CncStop, Fault
+from hli_bench.kernel.decoder.text import Scanner
+
+_PARAMETER = re.compile(r"(P+)([0-9]+|(?=\[))", re.IGNORECASE)
+_VARIABLE = re.compile(r"V\.([A-Z]+)\.([A-Z_][A-Z0-9_]*(?:\.[A-Z_][A-Z0-9_]*)*)", re.IGNORECASE)
+_OWN: Final = frozenset("PLSE")
+"""Own variables. V.E. is kept by the program alone: the PLC does not see it yet."""
+
+_NEED_VALUE: Final = frozenset(("MESS", "MOFFS", "MEAS.ACS.VALUE", "MEAS.PCS.VALUE"))
+_READS: Final = _NEED_VALUE | {"ABS", "PROG", "ACS.ABS", "ACT_POS", "MEIN", "BZP", "RERF", "MERF"}
+_NOT_YET: Final = frozenset(
+    ("MENT", "REF", "PZV", "SOFFS", "MANUAL_OFFSETS", "ACS.ACT_POS", "LOG_AX_NR", "WCS.ABS", "MCS.ABS")
+)
+_NOT_YET_AREAS: Final = frozenset(("SPDL", "CYC", "TOOL", "TLM", "RTG", "RTA", "I", "G", "C"))
+
+_STRING = re.compile(r'"[^"]*"')
+_FROM_MACHINE = re.compile(r"V\.A\.(?:MESS|MERF|MOFFS|MEAS\.|ACT_POS|RERF)", re.IGNORECASE)
+_POSITION = re.compile(r"V\.A\.(ABS|PROG|ACS\.ABS)(?:\.([A-Z_]\w*)|\[)", re.IGNORECASE)
+
+
+def needs_flush(text: str, context: Context) -> bool:
+    """Tell whether a block reads a variable that only the machine can fill."""
+    if "." not in text:
+        return False
+    bare = _STRING.sub("", text)
+    if _FROM_MACHINE.search(bare):
+        return True
+    void = context.coordinates.void
+    return bool(void) and any(
+        found.group(2) is None or not _is_known(context, found.group(2), found.group(1))
+        for found in _POSITION.finditer(bare)
+    )
+
+
+def _is_known(context: Context, name: str, variable: str) -> bool:
+    """Tell whether the position of an axis is known without asking; an unknown name is not the machine's."""
+    axis, where = context.by_name.get(name.upper()), context.coordinates
+    if axis is None:
+        return True
+    in_frame = variable.upper() == "ACS.ABS" and where.frame is not None
+    needed = {axis.index, *where.main} if in_frame and where.main else {axis.index}
+    return not needed & where.void
+
+
+Slot = int | str
+"""Where a value is kept: the number of a P parameter or the name of an own variable."""
+
+
+class Variables:
+    """Memory of the program, and its view on axes and channel."""
+
+    __slots__ = ("_context", "_values")
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._values: dict[Slot, float] = {}
+
+    def at_name(self, scanner: Scanner) -> bool:
+        """Tell whether a parameter or variable stands at the scanner."""
+        scanner.skip()
+        text, pos = scanner.text, scanner.pos
+        return _PARAMETER.match(text, pos) is not None or text[pos : pos + 2].upper() == "V."
+
+    def read(self, scanner: Scanner) -> float:
+        """Take a name and return its value."""
+        start = scanner.pos
+        if (number := self._parameter(scanner)) is not None:
+            return self._parameter_value(scanner, number, start)
+        area, name = self._variable(scanner)
+        if area == "A":
+            return self._axis_value(scanner, name, start)
+        if area == "G" and name == "MEAS_TYPE":
+            return float(self._context.measuring_type)
+        if area == "G" and name == "FEEDRATE":
+            return self._context.feed
+        if area in _OWN:
+            key = self._own_key(scanner, area, name)
+            if key not in self._values:
+                raise scanner.error(f"variable {key} has no value yet", start)
+            return self._values[key]
+        raise self._unknown(scanner, area, name, start)
+
+    def assign(self, scanner: Scanner) -> Slot:
+        """Take `name = expression`, keep the value and return where."""
+        slot = self._slot(scanner)
+        scanner.expect("=")
+        self._values[slot] = evaluate(scanner, self)
+        return slot
+
+    def get(self, slot: Slot) -> float:
+        """Return a value that was assigned before."""
+        return self._values[slot]
+
+    def put(self, slot: Slot, value: float) -> None:
+        """Keep a value."""
+        self._values[slot] = value
+
+    def _slot(self, scanner: Scanner) -> Slot:
+        start = scanner.pos
+        if (number := self._parameter(scanner)) is not None:
+            return number
+        area, name = self._variable(scanner)
+        if area in _OWN:
+            return self._own_key(scanner, area, name)
+        if area in ("A", "G"):
+            raise self._stop(scanner, faults.WRITE_DENIED, f"V.{area}.{name}")
+        raise self._unknown(scanner, area, name, start)
+
+    def _parameter(self, scanner: Scanner) -> int | None:
+        """Take P10, P[...] or the indirect PP10 and return the number it stands for."""
+        found = scanner.match(_PARAMETER)
+        if found is None:
+            return None
+        if found.group(2):
+            number = int(found.group(2)[:9])
+        else:
+            scanner.expect("[")
+            number = self._whole(scanner, evaluate(scanner, self), "parameter number")
+            scanner.expect("]")
+        for _ in found.group(1)[1:]:
+            value = self._parameter_value(scanner, number, found.start())
+            number = self._whole(scanner, value, "parameter number")
+        return number
+
+    def _parameter_value(self, scanner: Scanner, number: int, at: int) -> float:
+        if number not in self._values:
+            raise scanner.error(f"parameter P{number} has no value yet", at)
+        return self._values[number]
+
+    def _whole(self, scanner: Scanner, value: float, what: str) -> int:
+        if value < 0 or abs(value - round(value)) > 1e-6:
+            raise scanner.error(f"expected a {what} (whole, not negative), found {value:g}")
+        return round(value)
+
+    def _variable(self, scanner: Scanner) -> tuple[str, str]:
+        found = scanner.match(_VARIABLE)
+        if found is None:
+            raise scanner.error("expected a variable such as V.A.ABS.X or V.P.NAME")
+        return found.group(1).upper(), found.group(2).upper()
+
+    def _index(self, scanner: Scanner) -> int:
+        scanner.expect("[")
+        index = self._whole(scanner, evaluate(scanner, self), "index")
+        scanner.expect("]")
+        return index
+
+    def _own_key(self, scanner: Scanner, area: str, name: str) -> str:
+        key = f"V.{area}.{name}"
+        while scanner.text[scanner.pos : scanner.pos + 1] == "[":
+            key += f"[{self._index(scanner)}]"
+        return key
+
+    def _axis_value(self, scanner: Scanner, name: str, start: int) -> float:
+        if scanner.text[scanner.pos : scanner.pos + 1] == "[":
+            index = AxisIndex(self._index(scanner))
+            if index not in self._context.axes:
+                raise self._stop(scanner, faults.WRONG_INDEX, f"V.A.{name}", index=index)
+        else:
+            name, _, axis_name = name.rpartition(".")
+            axis = self._context.by_name.get(axis_name)
+            if axis is None:
+                raise self._stop(scanner, faults.UNKNOWN_AXIS, f"V.A.{name}", axis=axis_name)
+            index = axis.index
+        if name in _NOT_YET:
+            raise scanner.not_emulated(f"V.A.{name}: this variable has no value here yet", start)
+        if name not in _READS or not self._context.path_axis(index):
+            raise self._stop(scanner, faults.UNKNOWN_VARIABLE, f"V.A.{name}")
+        if name in _NEED_VALUE:
+            return self._measured(scanner, name, index)
+        return self._position(name, index)
+
+    def _measured(self, scanner: Scanner, name: str, axis: AxisIndex) -> float:
+        values = self._context.measurements
+        if not values.has_value(axis):
+            raise CncStop(
+                faults.NO_MEASURED_VALUE,
+                scanner.block.source,
+                axis=self._context.axes[axis].name,
+                values={"variable": f"V.A.{name}"},
+            )
+        match name:
+            case "MESS":
+                return values.with_offsets(axis)
+            case "MOFFS":
+                return values.distance(axis)
+            case "MEAS.ACS.VALUE":
+                return values.in_axes(axis)
+            case _:
+                return values.without_offsets(axis)
+
+    def _position(self, name: str, axis: AxisIndex) -> float:
+        where, values = self._context.coordinates, self._context.measurements
+        match name:
+            case "ABS":
+                return where.absolute[axis]
+            case "PROG":
+                return where.programmed[axis]
+            case "ACS.ABS":
+                return where.acs(axis)
+            case "MEIN":
+                return where.included[axis]
+            case "BZP":
+                return where.shift[axis]
+            case "MERF":
+                return float(values.completed(axis))
+            case _:
+                pass
+        assert values.state is not None
+        if name == "RERF":
+            return float(values.state.referenced.get(axis, False))
+        return rounded(where.from_acs(values.state.actual)[axis] - where.applied[axis])
+
+    def _unknown(self, scanner: Scanner, area: str, name: str, at: int) -> Exception:
+        if area in _NOT_YET_AREAS:
+            return scanner.not_emulated(f"V.{area}.{name}: this variable has no value here yet", at)
+        return self._stop(scanner, faults.UNKNOWN_VARIABLE, f"V.{area}.{name}")
+
+    def _stop(self, scanner: Scanner, fault: Fault, variable: str, **values: float | str) -> CncStop:
+        return CncStop(fault, scanner.block.source, values={"variable": variable, **values})

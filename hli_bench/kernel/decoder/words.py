@@ -1,0 +1,330 @@
+"""Blocks of G, M, F and axis words."""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Final
+
+from hli_bench.base.errors import BenchError
+from hli_bench.base.ids import AxisIndex
+from hli_bench.kernel.blocks import Dwell, Home, Line, MeasuringRun, ProgramEnd
+from hli_bench.kernel.decoder import faults
+from hli_bench.kernel.decoder.context import Context, Steps
+from hli_bench.kernel.decoder.expressions import evaluate
+from hli_bench.kernel.decoder.faults import CncStop
+from hli_bench.kernel.decoder.text import Scanner
+from hli_bench.kernel.decoder.variables import Variables
+
+_G_WORD = re.compile(r"G([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE)
+_M_WORD = re.compile(r"M([0-9]+)", re.IGNORECASE)
+_LETTERS = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
+_AXIS_KEYWORD = re.compile(
+    r"\s*\[\s*(INDP_SYN|INDP_ASYN|FIXED_STOP|OSC|LIFT\w*|COUPLE|DIST_CTRL|PUNCH|OFFSET)\b", re.IGNORECASE
+)
+
+TAKING_AXES: Final = frozenset((74, 92, 100, 101, 102))
+"""G functions that give the axis words of their block another meaning than a position to move to."""
+
+WITHOUT_G100: Final = frozenset((5, 6))
+"""Measurement types whose runs are programmed with G310 (measurement manual, chapter 3)."""
+
+FEED_FROM_AXIS: Final = 2
+"""Measurement type whose feed is P-AXIS-00215."""
+
+IN_FORCE: Final = frozenset((17, 40, 71, 94))
+"""G functions that select what is in force anyway: plane XY, no radius compensation, mm, feed per minute."""
+
+NOT_BUILT: Final = {
+    "G2": "circles",
+    "G02": "circles",
+    "G3": "circles",
+    "G03": "circles",
+    "G18": "other planes",
+    "G19": "other planes",
+    "G20": "mirroring",
+    "G21": "mirroring",
+    "G22": "mirroring",
+    "G33": "thread cutting",
+    "G41": "tool radius compensation",
+    "G42": "tool radius compensation",
+    "G53": "zero offsets",
+    "G54": "zero offsets",
+    "G55": "zero offsets",
+    "G56": "zero offsets",
+    "G57": "zero offsets",
+    "G58": "zero offsets",
+    "G59": "zero offsets",
+    "G60": "exact stop",
+    "G61": "smoothing",
+    "G63": "tapping",
+    "G70": "inch",
+    "G75": "homing by drive",
+    "G93": "feed by time",
+    "G95": "feed per turn",
+    "G106": "travelling on to the target in measurement type 3",
+    "G107": "edge banding",
+    "G108": "edge banding",
+    "G150": "splines",
+    "G151": "splines",
+    "G210": "measuring with a jump",
+    "G260": "smoothing",
+    "G261": "smoothing",
+    "G310": "measuring with a jump",
+    "M0": "stopping for the operator",
+    "M00": "stopping for the operator",
+    "M1": "optional stop",
+    "M01": "optional stop",
+    "M17": "subroutines",
+    "M29": "subroutines",
+    "L": "subroutines",
+    "S": "spindles",
+    "T": "tools",
+    "D": "tools",
+    "H": "technology functions",
+    "I": "circles",
+    "J": "circles",
+    "K": "circles",
+    "R": "circles",
+    "E": "feed at the end of a block",
+}
+"""Words of the dialect that are not built, with what is missing."""
+
+
+@dataclass(slots=True)
+class Words:
+    """The words of one block; `at` is where the word stands that would make it an error."""
+
+    functions: list[int] = field(default_factory=list)
+    axes: list[tuple[AxisIndex, float]] = field(default_factory=list)
+    seconds: float | None = None
+    end: bool = False
+    at: int = 0
+
+
+class WordReader:
+    """Takes blocks of words apart; built once a program because the axis names are known then."""
+
+    __slots__ = ("_axis", "_context", "_memory")
+
+    def __init__(self, context: Context, memory: Variables) -> None:
+        self._context = context
+        self._memory = memory
+        names = sorted(context.by_name, key=len, reverse=True)
+        # An axis name that ends in a digit takes its value after '=' only: X2=100, because X2 is axis X at 2.
+        parts = [re.escape(name) + (r"(?=\s*=)" if name[-1].isdigit() else "") for name in names]
+        self._axis = re.compile(f"({'|'.join(parts) or '(?!)'})", re.IGNORECASE)
+
+    def run(self, scanner: Scanner) -> Steps:
+        """Decode the block that begins at the scanner."""
+        context, words = self._context, self._words(scanner)
+        _modal(context, words, scanner)
+        special = [number for number in words.functions if number in TAKING_AXES]
+        if special.count(100) > 1:
+            raise CncStop(faults.TWO_MEASURING_FUNCTIONS, scanner.block.source)
+        if len(special) > 1:
+            both = " and ".join(f"G{number}" for number in special)
+            raise scanner.error(f"expected one of {both} in a block: each takes the axis words", words.at)
+        if special:
+            yield from _SPECIAL[special[0]](context, words, scanner)
+        elif words.axes:
+            yield from _line(context, words, scanner)
+        if words.seconds is not None:
+            context.moved()
+            yield Dwell(source=scanner.block.source, seconds=words.seconds)
+        if words.end:
+            context.ended = True
+            yield ProgramEnd(source=scanner.block.source)
+
+    def _words(self, scanner: Scanner) -> Words:
+        words = Words()
+        while not scanner.at_end():
+            if self._memory.at_name(scanner):
+                self._memory.assign(scanner)
+            elif self._is_dwell(scanner):
+                words.seconds = self._seconds(scanner)
+            elif found := scanner.match(_G_WORD):
+                words.functions.append(_g_number(scanner, found))
+                words.at = found.start()
+            elif found := scanner.match(self._axis):
+                words.axes.append(self._axis_word(scanner, found))
+            else:
+                self._letter(scanner, words)
+        return words
+
+    def _is_dwell(self, scanner: Scanner) -> bool:
+        found = _G_WORD.match(scanner.text, scanner.pos)
+        if found is None or found.group(1).lstrip("0") != "4":
+            return False
+        scanner.pos = found.end()
+        return True
+
+    def _seconds(self, scanner: Scanner) -> float:
+        """Take the time of G04: a plain number or an X word, in seconds."""
+        if scanner.peek() in ("X", "x"):
+            scanner.pos += 1
+        start = scanner.pos
+        scanner.accept("=")
+        if scanner.at_end():
+            raise scanner.error("expected the seconds of G04")
+        seconds = evaluate(scanner, self._memory)
+        if seconds < 0:
+            raise scanner.error(f"G04: expected seconds from 0 on, found {seconds:g}", start)
+        return seconds
+
+    def _axis_word(self, scanner: Scanner, found: re.Match[str]) -> tuple[AxisIndex, float]:
+        axis = self._context.by_name[found.group(1).upper()]
+        if axis.kind == "S":
+            raise scanner.not_emulated(f"{axis.name}: spindles are not built", found.start())
+        if keyword := _AXIS_KEYWORD.match(scanner.text, scanner.pos):
+            raise scanner.not_emulated(
+                f"{axis.name}[{keyword.group(1).upper()} ...]: axis commands are not built", found.start()
+            )
+        scanner.accept("=")
+        if scanner.at_end():
+            raise scanner.error(f"expected a position after {axis.name}, found the end of the block")
+        return axis.index, evaluate(scanner, self._memory)
+
+    def _letter(self, scanner: Scanner, words: Words) -> None:
+        start = scanner.pos
+        if scanner.peek() in ("F", "f"):
+            scanner.pos += 1
+            scanner.accept("=")
+            feed = evaluate(scanner, self._memory)
+            if feed < 0:
+                raise scanner.error(f"F: expected a feed from 0 on, found {feed:g}", start)
+            self._context.feed = feed
+            return
+        if found := scanner.match(_M_WORD):
+            name = f"M{int(found.group(1)[:9])}"
+            if name not in ("M2", "M30"):
+                what = NOT_BUILT.get(name, "technology functions")
+                raise scanner.not_emulated(f"{found.group().upper()}: {what} are not built", start)
+            words.end = True
+            return
+        raise self._unknown(scanner, start)
+
+    def _unknown(self, scanner: Scanner, start: int) -> BenchError:
+        found = scanner.match(_LETTERS)
+        if found is None:
+            return scanner.error(f"expected a word such as G01, F1000 or X10, found {scanner.found()}", start)
+        word = found.group().upper()
+        if word[0] in NOT_BUILT and (len(word) == 1 or word[1].isdigit()):
+            return scanner.not_emulated(f"{word}: {NOT_BUILT[word[0]]} are not built", start)
+        axes = ", ".join(self._context.by_name)
+        if word[0] == "N" and word[1:].isdigit():
+            return scanner.error(f"expected the block number {word} at the beginning of its block", start)
+        return scanner.error(f"expected a G, F, M or axis word (axes {axes}), found '{word}'", start)
+
+
+def _g_number(scanner: Scanner, found: re.Match[str]) -> int:
+    written = f"G{found.group(1)}"
+    name = "G" + (written[1:].lstrip("0") or "0")
+    number = int(name[1:]) if name[1:].isdigit() and len(name) < 6 else -1
+    if number in TAKING_AXES or number in IN_FORCE or number in (0, 1, 90, 91):
+        return number
+    if name in NOT_BUILT:
+        raise scanner.not_emulated(f"{written}: {NOT_BUILT[name]} not built", found.start())
+    raise scanner.error(
+        f"expected G00, G01, G04, G74, G90, G91, G92, G100, G101 or G102, found '{written}'", found.start()
+    )
+
+
+def _modal(context: Context, words: Words, scanner: Scanner) -> None:
+    for group in ((0, 1), (90, 91)):
+        if all(number in words.functions for number in group):
+            raise scanner.error(f"expected one of G{group[0]:02d} and G{group[1]:02d} in a block", words.at)
+    for number in words.functions:
+        if number in (0, 1):
+            context.rapid = number == 0
+        elif number in (90, 91):
+            context.absolute = number == 90
+
+
+def _positions(context: Context, words: Words, scanner: Scanner) -> Steps:
+    if context.coordinates.needs_machine(words.axes, absolute=context.absolute):
+        yield from context.flush(scanner.block.source)
+
+
+def _line(context: Context, words: Words, scanner: Scanner) -> Steps:
+    if not context.rapid and not context.feed:
+        raise scanner.error("no feed (F) programmed for G01", 0)
+    yield from _positions(context, words, scanner)
+    target = context.coordinates.move(words.axes, absolute=context.absolute)
+    if target:
+        context.moved()
+        yield Line(source=scanner.block.source, rapid=context.rapid, feed=context.feed, target=target)
+
+
+def _measuring_run(context: Context, words: Words, scanner: Scanner) -> Steps:
+    kind, where = context.measuring_type, context.coordinates
+    if kind in WITHOUT_G100:
+        raise CncStop(faults.G100_NOT_ALLOWED, scanner.block.source, values={"type": kind})
+    _need_axes(words, scanner, "G100")
+    if not context.feed and kind != FEED_FROM_AXIS:
+        raise scanner.error("no feed (F) programmed for G100", words.at)
+    yield from _positions(context, words, scanner)
+    moving = where.move(words.axes, absolute=context.absolute)
+    programmed = [axis for axis, _ in words.axes]
+    target = where.axis_target(programmed)
+    signals = {*(where.main or ()), *moving} if where.frame is not None else set(moving)
+    axes = tuple(sorted(signals))
+    context.measurements.begin(target)
+    where.forget(list(target), keep_programmed=True)
+    context.moved()
+    yield MeasuringRun(
+        source=scanner.block.source, measuring_type=kind, feed=context.feed, target=target, axes=axes
+    )
+
+
+def _home(context: Context, words: Words, scanner: Scanner) -> Steps:
+    _need_axes(words, scanner, "G74")
+    ranks: dict[AxisIndex, int] = {}
+    for axis, rank in words.axes:
+        if rank != int(rank) or rank < 1:
+            raise scanner.error(f"G74: expected a rank (1, 2, ...) after the axis, found {rank:g}", words.at)
+        ranks[axis] = int(rank)
+    context.coordinates.forget(list(ranks), keep_programmed=False)
+    context.moved()
+    yield Home(source=scanner.block.source, ranks=ranks)
+
+
+def _shift(context: Context, words: Words, scanner: Scanner) -> Steps:
+    yield from ()
+    _need_axes(words, scanner, "G92")
+    where = context.coordinates
+    for axis, value in words.axes:
+        where.set_shift(axis, value if context.absolute else where.shift[axis] + value)
+
+
+def _include(context: Context, words: Words, scanner: Scanner) -> Steps:
+    _need_axes(words, scanner, "G101")
+    source, measured = scanner.block.source, context.measurements
+    yield from context.flush(source)
+    for axis, factor in words.axes:
+        name = context.axes[axis].name
+        if not measured.has_value(axis):
+            raise CncStop(faults.NO_MEASURED_VALUE, source, axis=name)
+        if context.coordinates.included[axis]:
+            raise CncStop(faults.OFFSET_STILL_INCLUDED, source, axis=name)
+        context.coordinates.set_included(axis, round(factor * measured.distance(axis), 9) + 0.0)
+
+
+def _exclude(context: Context, words: Words, scanner: Scanner) -> Steps:
+    yield from ()
+    _need_axes(words, scanner, "G102")
+    for axis, _ in words.axes:
+        context.coordinates.set_included(axis, 0.0)
+
+
+def _need_axes(words: Words, scanner: Scanner, function: str) -> None:
+    if not words.axes:
+        raise scanner.error(f"expected an axis word in the block of {function}", words.at)
+
+
+_SPECIAL: Final[dict[int, Callable[[Context, Words, Scanner], Steps]]] = {
+    74: _home,
+    92: _shift,
+    100: _measuring_run,
+    101: _include,
+    102: _exclude,
+}

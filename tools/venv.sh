@@ -3,9 +3,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 lock=$1
+candidates=${PYTHON:-python3 python3.14 python3.13 python3.12 python3.11}
 
 lack() {
-  printf 'hli-bench cannot be set up: %s\n' "$@" >&2
+  echo "hli-bench cannot be set up: $*" >&2
   exit 3
 }
 
@@ -15,14 +16,14 @@ new_enough() {
 
 interpreter() {
   local name
-  for name in ${PYTHON:-python3 python3.14 python3.13 python3.12 python3.11}; do
+  for name in $candidates; do
     if new_enough "$name"; then
       echo "$name"
       return
     fi
   done
-  lack "Python 3.11 or newer is missing (python3 here: $(python3 --version 2>&1 || true)); " \
-    "install it, or name it: make PYTHON=/path/to/python3.11"
+  lack "no Python 3.11 or newer among: $candidates. Install one," \
+    "or name one: make PYTHON=/path/to/python3.11"
 }
 
 # A .venv whose interpreter has gone (the clone was moved, Python was upgraded) is of no use: make it again.

@@ -1,0 +1,119 @@
+"""The rule of a control unit: whose command counts, what the PLC gets to see, what happens without a PLC.
+
+The CNC looks at `enable_w` and `command_w` once a kernel cycle (`sample`). While redirection is on, the
+PLC's command counts and a wish of the GUI only shows in `request_r`; while it is off, the GUI's value counts
+at once and `request_r` is not supplied. A unit counts only while `head.plc_present_w` of its axis or channel
+is TRUE.
+"""
+
+from collections.abc import Iterator, Mapping
+
+from hli_bench.protocols.hli.image import Image, Value
+
+
+class ControlUnit:
+    """One control unit; `effective` and `redirected` hold from one sampling to the next."""
+
+    __slots__ = (
+        "_command",
+        "_enable",
+        "_gui",
+        "_image",
+        "_present",
+        "_request",
+        "_semaphor",
+        "_state",
+        "effective",
+        "path",
+        "redirected",
+    )
+
+    def __init__(self, image: Image, path: str, default: Value) -> None:
+        """`default` is the GUI's value until `ask` changes it."""
+        ids = {element.member: element.id for element in image.layout.groups[path].elements}
+        area = "/".join(path.split("/", 2)[:2])
+        self.path = path
+        self._image = image
+        self._request, self._enable = ids["request_r"], ids["enable_w"]
+        self._command, self._state = ids["command_w"], ids["state_r"]
+        self._semaphor = ids.get("command_semaphor_rw")
+        self._present = image.layout.element(f"{area}/head/plc_present_w").id
+        self._gui = default
+        self.effective: Value = default
+        self.redirected = False
+
+    def ask(self, wish: Value) -> None:
+        """Take a wish of the GUI: it acts at the next sampling, or shows in request_r under redirection."""
+        self._gui = wish
+        if self.redirected:
+            self._image.set(self._request, wish)
+        else:
+            self.effective = wish
+
+    def sample(self) -> bool:
+        """Look at the PLC's members once; tell whether `effective` or `redirected` changed.
+
+        A unit with usage check takes its command only while command_semaphor_rw is TRUE, and clears it.
+        """
+        image = self._image
+        before = self.redirected, self.effective
+        self.redirected = bool(image.get(self._enable)) and bool(image.get(self._present))
+        image.set(self._request, self._gui if self.redirected else type(self._gui)())
+        if not self.redirected:
+            self.effective = self._gui
+        elif self._semaphor is None:
+            self.effective = image.get(self._command)
+        elif image.get(self._semaphor):
+            self.effective = image.get(self._command)
+            image.set(self._semaphor, False)
+            return True
+        return before != (self.redirected, self.effective)
+
+    def acknowledge(self, value: Value) -> None:
+        """Write state_r: the CNC has acted and this is what holds now."""
+        self._image.set(self._state, value)
+
+
+class ControlUnits:
+    """All control units of an image; only those a PLC wrote to are looked at again."""
+
+    __slots__ = ("_by_element", "_image", "_units")
+
+    def __init__(self, image: Image, defaults: Mapping[str, Value]) -> None:
+        """`defaults` gives the GUI's value by the last part of a unit's path; others start FALSE or 0."""
+        self._image = image
+        self._units: dict[str, ControlUnit] = {}
+        self._by_element: dict[int, tuple[ControlUnit, ...]] = {}
+        for path, group in image.layout.groups.items():
+            names = {element.member: element for element in group.elements}
+            if "enable_w" not in names or "command_w" not in names:
+                continue
+            zero = False if names["command_w"].type == "BOOL" else 0
+            unit = ControlUnit(image, path, defaults.get(path.rpartition("/")[2], zero))
+            unit.sample()
+            self._units[path] = unit
+            for element in group.elements:
+                self._by_element[element.id] = (unit,)
+        self._add_presence()
+
+    def __getitem__(self, name: str) -> ControlUnit:
+        """Return the unit that `name` means (path, ST form or old name)."""
+        return self._units[self._image.layout.resolve(name)]
+
+    def __iter__(self) -> Iterator[ControlUnit]:
+        return iter(self._units.values())
+
+    def sample(self) -> list[ControlUnit]:
+        """Sample once a kernel cycle: return the units whose effective value or redirection changed."""
+        written = self._image.take_written()
+        if not written:
+            return []
+        touched = {unit.path: unit for element in written for unit in self._by_element.get(element, ())}
+        return [unit for unit in touched.values() if unit.sample()]
+
+    def _add_presence(self) -> None:
+        for element in self._image.layout.elements:
+            if element.member == "plc_present_w":
+                area = element.path.removesuffix("head/plc_present_w")
+                units = tuple(unit for path, unit in self._units.items() if path.startswith(area))
+                self._by_element[element.id] = units

@@ -32,6 +32,8 @@ from hli_bench.protocols.canopen.sync import SyncConsumer
 from hli_bench.wire.can import CanFrame
 
 _IDENTITY: Final = 0x1018
+_SERIAL: Final = 4
+"""Sub-index of the serial number, which stays when LSS gives the node another id."""
 _STORE: Final = 0x1010
 _RESTORE: Final = 0x1011
 _SAVE: Final = int.from_bytes(b"save", "little")
@@ -183,7 +185,9 @@ class Device:
         self._lss.pending_node_id = node_id
         self._lss.configuring = False
         self.values.reset(indices)
-        self.emcy.reset()
+        if self.values.has(_IDENTITY, _SERIAL):
+            self.values.put(_IDENTITY, _SERIAL, self._lss.identity[3])
+        self.emcy.reset(keep_errors=indices is not ALL_OBJECTS)
         self._error_control.reset()
         self._consumer.reload()
         self._sync.reload()

@@ -64,12 +64,13 @@ class EmergencyProducer:
         if self._active.pop(code, None) is not None:
             self._update(next(reversed(self._active), NO_ERROR), b"")
 
-    def reset(self) -> None:
-        """Forget errors and messages without sending anything."""
-        self._active.clear()
+    def reset(self, *, keep_errors: bool) -> None:
+        """Forget waiting messages and, unless they are kept over a reset communication, active errors."""
         self._queue.clear()
         self._allowed_at = Ns(0)
-        self._values.put(_REGISTER, 0, 0)
+        if not keep_errors:
+            self._active.clear()
+        self._set_register()
 
     def tick(self, now: Ns) -> list[CanFrame]:
         """Return the messages that the inhibit time allows now."""
@@ -88,11 +89,15 @@ class EmergencyProducer:
         return self._allowed_at if self._queue else None
 
     def _update(self, code: int, detail: bytes) -> None:
+        self._queue.append(struct.pack("<HB5s", code, self._set_register(), detail))
+
+    def _set_register(self) -> int:
+        """Show the bits of all active errors in 0x1001 and return them."""
         register = 0
         for bits in self._active.values():
             register |= bits
         self._values.put(_REGISTER, 0, register)
-        self._queue.append(struct.pack("<HB5s", code, register, detail))
+        return register
 
     def _remember(self, code: int) -> None:
         """Shift the history by one; the newest stands at sub-index 1."""

@@ -1,0 +1,413 @@
+"""A CiA 402 drive in cyclic synchronous position mode: CANopen on one side, its servo row on the other.
+
+The compiled laws compute with the row; this class moves numbers between row and object dictionary and runs
+the state machine. It acts at a SYNC, in this order: faults that the law raised, stops that came to an end,
+RPDO data, TPDO samples. Ramps are not emulated: to stop means that the set point stands still at once; the
+stop is over when the axis does, at the latest after STOP_TIMEOUT (decided here).
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, fields
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+from typing import Any, Final
+
+from drives.cia402 import objects, telegram
+from drives.cia402.faults import Fault, error_register
+from drives.cia402.modes import is_supported
+from drives.cia402.objects import ObjectAddress
+from drives.cia402.states import ENABLE_OPERATION, ControlBit, State, StatusBit, Transition, walk
+from drives.cia402.touch_probe import ProbeSource, resolve_source
+from hli_bench.base.errors import InputError
+from hli_bench.base.time import NS_PER_S, Ns
+from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
+from hli_bench.protocols.canopen.datatypes import Value
+from hli_bench.protocols.canopen.device import Device
+from hli_bench.protocols.canopen.eds import load
+from hli_bench.protocols.canopen.nmt import NmtState
+from hli_bench.wire.can import CanFrame
+
+STOP_TIMEOUT: Final = Ns(NS_PER_S)
+"""A stop that lasts longer ends anyway (decided here)."""
+STANDSTILL_TURNS_PER_S: Final = 0.01
+"""An axis slower than this stands (decided here)."""
+
+_LAW_FLAGS: Final = int(
+    StatusBit.TARGET_REACHED | StatusBit.INTERNAL_LIMIT | StatusBit.DRIVE_FOLLOWS | StatusBit.FOLLOWING_ERROR
+)
+_ALWAYS: Final = int(StatusBit.VOLTAGE_ENABLED | StatusBit.REMOTE)
+_POWERED: Final = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
+_TORQUE_LIMITS: Final = (objects.MAX_TORQUE, objects.POSITIVE_TORQUE_LIMIT, objects.NEGATIVE_TORQUE_LIMIT)
+_SOURCES: Final = (
+    (ProbeSource.INPUT_1, ProbeSource.ZERO_PULSE),
+    (ProbeSource.INPUT_2, ProbeSource.ZERO_PULSE),
+)
+_DEFAULT_SOURCES: Final = (int(ProbeSource.INPUT_1), int(ProbeSource.INPUT_2))
+
+_QUICK_STOP, _RESET_FAULT = 11, 15
+_STAY_IN_QUICK_STOP: Final = 5
+"""Quick stop options from here on stay in QUICK STOP ACTIVE."""
+_STOP_FIRST: Final = {5: objects.DISABLE_OPERATION_OPTION, 8: objects.SHUTDOWN_OPTION}
+"""Transitions whose option 1 brings the axis to a stop before power is cut."""
+
+
+class FollowingErrorReaction(StrEnum):
+    """What leaving the window 0x6065 for longer than 0x6066 does beside statusword bit 13."""
+
+    FAULT = "fault"
+    STATUS = "status"
+
+
+@dataclass(frozen=True, slots=True)
+class DriveOptions:
+    """What a machine folder may choose where drives differ. A window of 0 always means off (decided here)."""
+
+    following_error: FollowingErrorReaction = FollowingErrorReaction.FAULT
+
+    @classmethod
+    def from_mapping(cls, options: Mapping[str, object], drive: str = "") -> "DriveOptions":
+        """Return the options of a table of words. Raises InputError for unknown keys and values."""
+        known = [field.name for field in fields(cls)]
+        for key in options:
+            if key not in known:
+                raise InputError(f"drive {drive}: option {key!r} is none of {', '.join(known)}")
+        word = options.get("following_error", FollowingErrorReaction.FAULT)
+        if word not in list(FollowingErrorReaction):
+            allowed = ", ".join(FollowingErrorReaction)
+            raise InputError(f"drive {drive}: following_error = {word!r} is none of {allowed}")
+        return cls(FollowingErrorReaction(str(word)))
+
+
+class Drive:
+    """One drive node. `row` is an element of a structured array of dtype SERVO and belongs to this drive."""
+
+    __slots__ = (
+        "_deadline",
+        "_destination",
+        "_fault",
+        "_now",
+        "_options",
+        "_probe_word",
+        "_row",
+        "_signature_changes",
+        "_signature_default",
+        "_word",
+        "device",
+        "name",
+        "state",
+    )
+
+    def __init__(self, name: str, device: Device, row: Any, options: DriveOptions) -> None:
+        self.name = name
+        self.device = device
+        self.state = State.SWITCH_ON_DISABLED
+        self._row = row
+        self._options = options
+        self._now = Ns(0)
+        self._signature_changes = -1
+        self._signature_default = False
+        self._hook_reads()
+        self._hook_writes()
+        self._start()
+        device.attach(self)
+
+    @property
+    def node_id(self) -> int:
+        """The CANopen node id."""
+        return self.device.node_id
+
+    @property
+    def statusword(self) -> int:
+        """Object 0x6041: state, voltage and remote, and the bits that the law computes."""
+        return int(self.state) | _ALWAYS | (int(self._row["status_flags"]) & _LAW_FLAGS)
+
+    @property
+    def holding(self) -> bool:
+        """Whether the drive stands on its demand instead of following the target."""
+        halted = self.state is State.OPERATION_ENABLED and bool(self._word & ControlBit.HALT)
+        stopping = self.state in {State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE}
+        return halted or stopping or self._destination is not None
+
+    def power_on(self) -> list[CanFrame]:
+        """Boot the node."""
+        return self.device.power_on()
+
+    def step(self, now: Ns, inbox: Iterable[CanFrame]) -> list[CanFrame]:
+        """Take the frames of an instant and return what the drive sends at it."""
+        frames = [answer for frame in inbox for answer in self.on_frame(frame, now)]
+        return frames + self.tick(now)
+
+    def on_frame(self, frame: CanFrame, now: Ns) -> list[CanFrame]:
+        """Take one frame, SYNC included."""
+        self._now = now
+        return self.device.on_frame(frame, now)
+
+    def tick(self, now: Ns) -> list[CanFrame]:
+        """Return what is due by time or event."""
+        self._now = now
+        return self.device.tick(now)
+
+    def next_due(self, now: Ns) -> Ns | None:
+        """Return when `tick` has something to do at the latest."""
+        return self.device.next_due(now)
+
+    def cyclic_signature(self) -> bool:
+        """Whether numbers may pass between rows without frames.
+
+        True while the node is OPERATIONAL with the default telegram, follows its target and takes touch probe
+        functions as they come. `encode_cycle` then gives the frames that would have been sent.
+        """
+        changes = self.device.pdos.changes
+        if changes != self._signature_changes:
+            self._signature_changes = changes
+            default = telegram.default_signature(self.node_id)
+            self._signature_default = self.device.pdos.signature == default
+        operational = self.device.nmt.state is NmtState.OPERATIONAL
+        return (
+            operational
+            and self._signature_default
+            and not self.holding
+            and self._sources() == _DEFAULT_SOURCES
+        )
+
+    def encode_cycle(self, values: telegram.LoggedCycle) -> list[CanFrame]:
+        """Return the PDOs of a cycle of which only the numbers were kept."""
+        return telegram.pdo_frames(self.node_id, values)
+
+    def exchange(self, controlword: int, target: int, probe_function: int, now: Ns) -> int:
+        """Act at a SYNC as on the default RPDOs with these numbers, without frames; return the statusword."""
+        self.on_sync(now)
+        self._write_controlword(controlword)
+        self._write_target(target)
+        self._write_probe_function(probe_function)
+        return self.statusword
+
+    def fault(self, code: int) -> None:
+        """Let an error happen: EMCY, 0x603F and the reaction of 0x605E. A second one changes nothing."""
+        if self.state in {State.FAULT_REACTION_ACTIVE, State.FAULT}:
+            return
+        self._fault = code
+        self.device.values.put(*objects.ERROR_CODE, code)
+        self.device.emcy.occur(code, error_register(code))
+        if self._option(objects.FAULT_REACTION_OPTION) and self.state in _POWERED:
+            self._enter(State.FAULT_REACTION_ACTIVE)
+            self._stop(State.FAULT)
+        else:
+            self._enter(State.FAULT)
+
+    def on_sync(self, now: Ns) -> None:
+        """Take the law's fault, end a stop that is over."""
+        self._now = now
+        code = int(self._row["fault"])
+        if code == Fault.FOLLOWING_ERROR and self._options.following_error is FollowingErrorReaction.STATUS:
+            self._row["fault"] = 0
+        elif code:
+            self.fault(code)
+        if self._destination is not None and (self._stands() or now >= self._deadline):
+            self._enter(self._destination)
+
+    def on_reset(self) -> None:
+        """Start as after power-on, with the dictionary's power-on values."""
+        self._start()
+
+    def on_nmt(self, state: NmtState) -> None:
+        """Treat the end of OPERATIONAL as the loss of the connection."""
+        if state is not NmtState.OPERATIONAL:
+            self.on_connection_lost()
+
+    def on_connection_lost(self) -> None:
+        """React as 0x6007 says when power is on: 0 nothing, 1 fault, 2 disable voltage, 3 quick stop."""
+        if self.state not in _POWERED:
+            return
+        match self._option(objects.ABORT_CONNECTION_OPTION):
+            case 1:
+                self.fault(Fault.COMMUNICATION)
+            case 2:
+                self._enter(State.SWITCH_ON_DISABLED)
+            case 3 if self.state is State.OPERATION_ENABLED:
+                self._quick_stop()
+            case _:
+                pass
+
+    def _start(self) -> None:
+        """Take the state and the numbers that the drive has after power-on."""
+        self._word = 0
+        self._fault = 0
+        self._probe_word = 0
+        self._destination: State | None = None
+        self._deadline = Ns(0)
+        values, row = self.device.values, self._row
+        row["fault"] = 0
+        row["target"] = values.number(*objects.TARGET_POSITION)
+        row["following_window"] = values.number(*objects.FOLLOWING_WINDOW)
+        row["following_timeout_ms"] = values.number(*objects.FOLLOWING_TIMEOUT)
+        self._limit_torque(objects.MAX_TORQUE, values.number(*objects.MAX_TORQUE))
+        self._write_probe_function(values.number(*objects.PROBE_FUNCTION))
+        self._enter(State.SWITCH_ON_DISABLED)
+
+    def _hook_reads(self) -> None:
+        """Let the objects of the machine's numbers answer from the row."""
+        row = self._row
+        sources: dict[ObjectAddress, Callable[[], Value]] = {
+            objects.STATUSWORD: lambda: self.statusword,
+            objects.CONTROLWORD: lambda: self._word,
+            objects.PROBE_FUNCTION: self._read_probe_function,
+            objects.MODE_DISPLAY: lambda: self._option(objects.MODE),
+            objects.RATED_TORQUE: lambda: round(float(row["rated_torque"]) * 1000.0),
+        }
+        names = {
+            objects.TARGET_POSITION: "target",
+            objects.POSITION_DEMAND: "demand",
+            objects.POSITION_DEMAND_INTERNAL: "demand",
+            objects.POSITION_ACTUAL: "position",
+            objects.POSITION_INTERNAL: "position",
+            objects.VELOCITY_ACTUAL: "velocity",
+            objects.FOLLOWING_ERROR: "following_error",
+            objects.TORQUE_ACTUAL: "torque_permille",
+            objects.PROBE_STATUS: "probe_status",
+            objects.DIGITAL_INPUTS: "digital_inputs",
+            objects.ENCODER_INCREMENTS: "increments_per_turn",
+        }
+        sources |= {address: partial(_number, row, name) for address, name in names.items()}
+        for slot, (position, time) in enumerate(zip(objects.LATCHES, objects.LATCH_TIMES, strict=True)):
+            sources[position] = partial(_element, row, "latch", slot)
+            sources[time] = partial(_element, row, "latch_time", slot)
+        for address, source in sources.items():
+            self.device.values.on_read(*address, source)
+
+    def _hook_writes(self) -> None:
+        """Let writes from the bus reach the row and the state machine."""
+        sinks: dict[ObjectAddress, Callable[[Value], None]] = {
+            objects.CONTROLWORD: self._write_controlword,
+            objects.TARGET_POSITION: self._write_target,
+            objects.PROBE_FUNCTION: self._write_probe_function,
+            objects.MODE: self._write_mode,
+            objects.FOLLOWING_WINDOW: partial(_store, self._row, "following_window"),
+            objects.FOLLOWING_TIMEOUT: partial(_store, self._row, "following_timeout_ms"),
+        }
+        sinks |= {address: partial(self._limit_torque, address) for address in _TORQUE_LIMITS}
+        for slot, address in enumerate(objects.PROBE_SOURCES):
+            sinks[address] = partial(self._write_source, slot)
+        for address, sink in sinks.items():
+            self.device.values.on_write(*address, sink)
+
+    def _write_controlword(self, value: Value) -> None:
+        """Run the state machine; the same word again changes nothing."""
+        word = int(value)
+        before, self._word = self._word, word
+        was_holding = self.holding
+        if self.state is State.OPERATION_ENABLED and word & ENABLE_OPERATION == ENABLE_OPERATION:
+            self._destination = None
+        for row in walk(self.state, word, before):
+            self._take(row)
+        if self.holding and not was_holding:
+            self._hold()
+
+    def _take(self, row: Transition) -> None:
+        """Make a transition, or begin the stop that comes before it."""
+        option = _STOP_FIRST.get(row.number)
+        if row.number == _QUICK_STOP:
+            self._quick_stop()
+        elif option is not None and self._option(option):
+            self._stop(row.target)
+        else:
+            if row.number == _RESET_FAULT:
+                self._reset_fault()
+            self._enter(row.target)
+
+    def _quick_stop(self) -> None:
+        """Stop; by 0x605A at once without power (0), then without power (1..4), or staying so (5..8)."""
+        option = self._option(objects.QUICK_STOP_OPTION)
+        if option == 0:
+            self._enter(State.SWITCH_ON_DISABLED)
+            return
+        self._enter(State.QUICK_STOP_ACTIVE)
+        self._hold()
+        if option < _STAY_IN_QUICK_STOP:
+            self._stop(State.SWITCH_ON_DISABLED)
+
+    def _reset_fault(self) -> None:
+        """Clear the fault; one whose cause persists comes back from the law."""
+        self._row["fault"] = 0
+        self._row["following_elapsed_ns"] = 0
+        self.device.values.put(*objects.ERROR_CODE, 0)
+        self.device.emcy.recover(self._fault)
+        self._fault = 0
+
+    def _enter(self, state: State) -> None:
+        self.state = state
+        self._destination = None
+        self._row["enabled"] = state in _POWERED
+
+    def _stop(self, destination: State) -> None:
+        """Stand still, then enter `destination`."""
+        if self._destination is not destination:
+            self._destination = destination
+            self._deadline = Ns(self._now + STOP_TIMEOUT)
+            self._hold()
+
+    def _hold(self) -> None:
+        self._row["target"] = self._row["demand"]
+
+    def _stands(self) -> bool:
+        return abs(int(self._row["velocity"])) <= STANDSTILL_TURNS_PER_S * float(
+            self._row["increments_per_turn"]
+        )
+
+    def _write_target(self, value: Value) -> None:
+        """Follow the target unless the drive holds."""
+        if not self.holding:
+            self._row["target"] = value
+
+    def _write_mode(self, value: Value) -> None:
+        if not is_supported(int(value), self._option(objects.SUPPORTED_MODES)):
+            raise SdoAbort(AbortCode.RANGE)
+
+    def _limit_torque(self, changed: ObjectAddress, value: Value) -> None:
+        """Clamp to the least of 0x6072, 0x60E0, 0x60E1 and the peak torque of the drive."""
+        limits = [self._option(address) for address in _TORQUE_LIMITS if address != changed]
+        self._row["torque_limit_permille"] = min(int(value), *limits, float(self._row["peak_permille"]))
+
+    def _write_probe_function(self, value: Value) -> None:
+        self._probe_word = int(value)
+        self._row["probe_function"] = resolve_source(self._probe_word, self._sources())
+
+    def _read_probe_function(self) -> int:
+        """Return the word as written, or what came row to row since."""
+        present = int(self._row["probe_function"])
+        as_written = present == resolve_source(self._probe_word, self._sources())
+        return self._probe_word if as_written else present
+
+    def _write_source(self, slot: int, value: Value) -> None:
+        """Take a source for one touch probe: its own input or the zero pulse, more is not wired."""
+        if value not in _SOURCES[slot]:
+            raise SdoAbort(AbortCode.RANGE)
+        first, second = self._sources()
+        sources = (int(value), second) if slot == 0 else (first, int(value))
+        self._row["probe_function"] = resolve_source(self._probe_word, sources)
+
+    def _sources(self) -> tuple[int, int]:
+        first, second = (self._option(address) for address in objects.PROBE_SOURCES)
+        return first, second
+
+    def _option(self, address: ObjectAddress) -> int:
+        return self.device.values.number(*address)
+
+
+def create(name: str, node_id: int, eds_path: Path, row: Any, options: Mapping[str, object]) -> Drive:
+    """Build the drive `name` from its EDS on its servo row. Raises InputError for a bad EDS or option."""
+    checked = DriveOptions.from_mapping(options, name)
+    return Drive(name, Device(load(eds_path), node_id), row, checked)
+
+
+def _number(row: Any, name: str) -> int:
+    return int(row[name])
+
+
+def _element(row: Any, name: str, slot: int) -> int:
+    return int(row[name][slot])
+
+
+def _store(row: Any, name: str, value: Value) -> None:
+    row[name] = value

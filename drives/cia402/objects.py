@@ -1,0 +1,49 @@
+"""Addresses of CiA 402 objects."""
+
+from typing import Final, NamedTuple
+
+
+class ObjectAddress(NamedTuple):
+    """Index and sub-index of an object."""
+
+    object_index: int
+    subindex: int = 0
+
+
+ABORT_CONNECTION_OPTION: Final = ObjectAddress(0x6007)
+ERROR_CODE: Final = ObjectAddress(0x603F)
+CONTROLWORD: Final = ObjectAddress(0x6040)
+STATUSWORD: Final = ObjectAddress(0x6041)
+QUICK_STOP_OPTION: Final = ObjectAddress(0x605A)
+SHUTDOWN_OPTION: Final = ObjectAddress(0x605B)
+DISABLE_OPERATION_OPTION: Final = ObjectAddress(0x605C)
+HALT_OPTION: Final = ObjectAddress(0x605D)
+FAULT_REACTION_OPTION: Final = ObjectAddress(0x605E)
+MODE: Final = ObjectAddress(0x6060)
+MODE_DISPLAY: Final = ObjectAddress(0x6061)
+POSITION_DEMAND: Final = ObjectAddress(0x6062)
+POSITION_INTERNAL: Final = ObjectAddress(0x6063)
+POSITION_ACTUAL: Final = ObjectAddress(0x6064)
+FOLLOWING_WINDOW: Final = ObjectAddress(0x6065)
+FOLLOWING_TIMEOUT: Final = ObjectAddress(0x6066)
+VELOCITY_ACTUAL: Final = ObjectAddress(0x606C)
+MAX_TORQUE: Final = ObjectAddress(0x6072)
+RATED_CURRENT: Final = ObjectAddress(0x6075)
+RATED_TORQUE: Final = ObjectAddress(0x6076)
+TORQUE_ACTUAL: Final = ObjectAddress(0x6077)
+TARGET_POSITION: Final = ObjectAddress(0x607A)
+ENCODER_INCREMENTS: Final = ObjectAddress(0x608F, 1)
+TORQUE_OFFSET: Final = ObjectAddress(0x60B2)
+PROBE_FUNCTION: Final = ObjectAddress(0x60B8)
+PROBE_STATUS: Final = ObjectAddress(0x60B9)
+LATCHES: Final = tuple(ObjectAddress(index) for index in (0x60BA, 0x60BB, 0x60BC, 0x60BD))
+"""Touch probe 1 positive and negative edge, touch probe 2 positive and negative edge."""
+PROBE_SOURCES: Final = (ObjectAddress(0x60D0, 1), ObjectAddress(0x60D0, 2))
+LATCH_TIMES: Final = tuple(ObjectAddress(index) for index in (0x60D1, 0x60D2, 0x60D3, 0x60D4))
+"""Low 32 bits of the instant of each latch in ns, in the order of LATCHES."""
+POSITIVE_TORQUE_LIMIT: Final = ObjectAddress(0x60E0)
+NEGATIVE_TORQUE_LIMIT: Final = ObjectAddress(0x60E1)
+FOLLOWING_ERROR: Final = ObjectAddress(0x60F4)
+POSITION_DEMAND_INTERNAL: Final = ObjectAddress(0x60FC)
+DIGITAL_INPUTS: Final = ObjectAddress(0x60FD)
+SUPPORTED_MODES: Final = ObjectAddress(0x6502)

@@ -1,0 +1,1 @@
+"""Drive models: one module each, named in a machine folder by its module path."""

@@ -1,0 +1,1 @@
+"""The bench: a machine folder becomes nodes, wiring and a schedule."""

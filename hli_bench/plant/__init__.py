@@ -1,0 +1,1 @@
+"""The machine around the drives: mechanics, workpiece and probe, cam switches, fixed stops."""

@@ -228,8 +228,9 @@ class SdoServer:
         content = self._values.upload(*self._address)
         if len(content) <= switch_bytes:
             return self._upload(content)
-        self._transfer = _BlockUpload(self._address, content, bool(data[0] & 4), block)
-        return [header(0xC6, *self._address, struct.pack("<I", len(content)))]
+        checked = data[0] & 4
+        self._transfer = _BlockUpload(self._address, content, bool(checked), block)
+        return [header(0xC2 | checked, *self._address, struct.pack("<I", len(content)))]
 
     def _send_block(self, transfer: _BlockUpload) -> list[bytes]:
         """Return the segments of the next block, from the position acknowledged so far."""

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from hli_bench.kernel.blocks import Source
-from hli_bench.kernel.decoder import faults
 from hli_bench.kernel.decoder.context import Context, Steps
 from hli_bench.kernel.decoder.expressions import evaluate, is_true
 from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.text import BlockText, Lines, Scanner, read_block
 from hli_bench.kernel.decoder.variables import Slot, Variables, needs_flush
+from hli_bench.manual.errors import decoder as errors
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,7 +61,9 @@ class Control:
         if word in _NOT_BUILT or _JUMP.search(scanner.text):
             raise scanner.not_emulated(f"${'GOTO' if word == 'IF' else word}: this statement is not built")
         if word not in _WORDS:
-            raise scanner.error(f"expected one of ${', $'.join(_WORDS)}, found {scanner.found()}", 0)
+            raise scanner.error(
+                f"expected one of ${', $'.join(_WORDS)}, found {scanner.found()}", scanner.start
+            )
         handlers: dict[str, Callable[[Scanner], Steps]] = {
             "IF": self._if,
             "WHILE": self._while,
@@ -89,9 +91,9 @@ class Control:
         while self._open and self._open[-1].word == "IF":
             self._open.pop()
         if not self._open:
-            raise scanner.error(f"expected ${word} inside a loop", 0)
+            raise scanner.error(f"expected ${word} inside a loop", scanner.start)
         loop = self._open[-1]
-        end = self._skip(loop, branches=False)
+        _, end = self._skip(loop, branches=False)
         if word == "CONTINUE":
             yield from self._again_while(end) if loop.word == "WHILE" else self._again_for()
         else:
@@ -106,8 +108,7 @@ class Control:
     def _read_over(self, opened: _Open, *, branches: bool) -> Steps:
         """Read on to the branch that is executed, or to $ENDIF."""
         while True:
-            scanner = self._skip(opened, branches=branches)
-            word = _statement(scanner)
+            word, scanner = self._skip(opened, branches=branches)
             if word == "ENDIF":
                 self._open.pop()
             elif word == "ELSEIF":
@@ -175,7 +176,7 @@ class Control:
 
     def _top(self, scanner: Scanner, word: str, by: str) -> _Open:
         if not self._open or self._open[-1].word != word:
-            raise scanner.error(f"expected an open ${word} before ${by}", 0)
+            raise scanner.error(f"expected an open ${word} before ${by}", scanner.start)
         return self._open[-1]
 
     def _leave(self) -> None:
@@ -183,8 +184,8 @@ class Control:
         if not any(opened.word in ("WHILE", "FOR") for opened in self._open):
             self._lines.forget()
 
-    def _skip(self, opened: _Open, *, branches: bool) -> Scanner:
-        """Read over blocks up to the end of the control block (or its next branch); return that block."""
+    def _skip(self, opened: _Open, *, branches: bool) -> tuple[str, Scanner]:
+        """Read over blocks up to the end of the control block (or its next branch); return its word."""
         depth = 0
         while (raw := self._lines.next()) is not None:
             scanner = Scanner(read_block(self._lines, raw, self._context.name))
@@ -193,11 +194,11 @@ class Control:
                 depth += 1
             elif word in _CLOSING:
                 if depth == 0:
-                    return scanner
+                    return word, scanner
                 depth -= 1
             elif branches and depth == 0 and word in ("ELSE", "ELSEIF"):
-                return scanner
-        raise CncStop(faults.OPEN_CONTROL_BLOCK, opened.block.source, values={"statement": f"${opened.word}"})
+                return word, scanner
+        raise CncStop(errors.CONTROL_STATEMENT_OPEN, opened.block.source)
 
 
 def _statement(scanner: Scanner) -> str:

@@ -90,6 +90,7 @@ class Coordinates:
         "applied",
         "frame",
         "included",
+        "including",
         "main",
         "offset",
         "programmed",
@@ -103,6 +104,7 @@ class Coordinates:
         self.applied = [0.0] * axes
         self.shift = [0.0] * axes
         self.included = [0.0] * axes
+        self.including: set[AxisIndex] = set()
         self.offset = [0.0] * axes
         self.main = main
         self.frame: Frame | None = None
@@ -115,10 +117,17 @@ class Coordinates:
         self.shift[axis] = value
         self.offset[axis] = value + self.included[axis]
 
-    def set_included(self, axis: AxisIndex, value: float) -> None:
-        """Set the measurement offset (G101, G102); it acts with the next absolute position."""
+    def include(self, axis: AxisIndex, value: float) -> None:
+        """Set the measurement offset (G101); it acts with the next absolute position."""
         self.included[axis] = value
+        self.including.add(axis)
         self.offset[axis] = self.shift[axis] + value
+
+    def exclude(self, axis: AxisIndex) -> None:
+        """Take the measurement offset out (G102) with the next absolute position."""
+        self.included[axis] = 0.0
+        self.including.discard(axis)
+        self.offset[axis] = self.shift[axis]
 
     def needs_machine(self, words: Sequence[tuple[AxisIndex, float]], *, absolute: bool) -> bool:
         """Tell whether motion to `words` needs positions that only the machine knows."""

@@ -5,8 +5,7 @@ from collections.abc import Generator, Iterable, Sequence
 from typing import Final
 
 from hli_bench.base.ids import AxisIndex
-from hli_bench.kernel.blocks import Line, MachineState, ProgramEnd, Source
-from hli_bench.kernel.decoder import faults
+from hli_bench.kernel.blocks import Line, MachineState, Source
 from hli_bench.kernel.decoder.commands import COMMANDS, KNOWN
 from hli_bench.kernel.decoder.configuration import DecoderAxis, DecoderDefaults
 from hli_bench.kernel.decoder.context import Context, Item, Steps
@@ -15,9 +14,11 @@ from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.text import Lines, Scanner, read_block
 from hli_bench.kernel.decoder.variables import Variables, needs_flush
 from hli_bench.kernel.decoder.words import WordReader
+from hli_bench.manual.errors import decoder as errors
 
 _PLAIN_WORDS = re.compile(r"([A-Za-z])([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))|([^ \t\r\n])")
 _HASH = re.compile(r"#\s*([A-Z]+)", re.IGNORECASE)
+_SUBROUTINE = re.compile(r"%L\s", re.IGNORECASE)
 _RAPID: Final = {"0": True, "00": True, "1": False, "01": False}
 _ABSOLUTE: Final = {"90": True, "91": False}
 
@@ -36,7 +37,7 @@ class Decoder:
     built; what the CNC reports by number comes as a `CncError`, after which nothing follows.
     """
 
-    __slots__ = ("_axis_of", "_context", "_control", "_lines", "_memory", "_words")
+    __slots__ = ("_axis_of", "_context", "_control", "_lines", "_memory", "_named", "_words")
 
     def __init__(
         self, program: Iterable[str], name: str, axes: Sequence[DecoderAxis], defaults: DecoderDefaults
@@ -46,6 +47,7 @@ class Decoder:
         self._memory = Variables(self._context)
         self._control = Control(self._context, self._memory, self._lines)
         self._words = WordReader(self._context, self._memory)
+        self._named = False
         self._axis_of: dict[str, AxisIndex] = {}
         for axis in axes:
             if len(axis.name) == 1 and axis.kind != "S" and axis.name.upper() not in "FGMNPV":
@@ -71,9 +73,8 @@ class Decoder:
             if context.ended:
                 return
         if (source := self._control.open_block) is not None:
-            raise CncStop(faults.OPEN_CONTROL_BLOCK, source)
-        # A program that ends without M30 ends all the same (decided here).
-        yield ProgramEnd(source=Source("", self._lines.number))
+            raise CncStop(errors.CONTROL_STATEMENT_OPEN, source)
+        raise CncStop(errors.PROGRAM_END_MISSING, Source("", self._lines.number))
 
     def _plain(self, raw: str) -> Line | _Other | None:
         """Decode a line of plain motion words in one go; nothing is changed unless all of it is plain."""
@@ -99,9 +100,10 @@ class Decoder:
                 feed = float(value)
             else:
                 return _OTHER
-        return self._take(
-            Source(number, self._lines.number), words, rapid=rapid, absolute=absolute, feed=feed
-        )
+        if len(words) > 1 and len(dict(words)) != len(words):
+            return _OTHER
+        source = Source(number, self._lines.number)
+        return self._take(source, words, rapid=rapid, absolute=absolute, feed=feed)
 
     def _take(
         self,
@@ -150,10 +152,11 @@ class Decoder:
             yield from self._words.run(scanner)
 
     def _program_name(self, scanner: Scanner) -> None:
-        if scanner.text[scanner.pos : scanner.pos + 3].upper().rstrip() == "%L" and scanner.text[
-            scanner.pos + 2 : scanner.pos + 3
-        ] in (" ", "\t"):
+        if scanner.match(_SUBROUTINE):
             raise scanner.not_emulated("%L: subroutines are not built")
+        if self._named:
+            raise CncStop(errors.PERCENT_IN_MAIN_PROGRAM, scanner.block.source)
+        self._named = True
 
     def _command(self, scanner: Scanner) -> Steps:
         found = scanner.match(_HASH)

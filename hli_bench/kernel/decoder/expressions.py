@@ -7,7 +7,7 @@ from typing import Final, Protocol
 
 from hli_bench.kernel.decoder.text import Scanner
 
-MAX_DEPTH: Final = 64
+MAX_DEPTH: Final = 32
 """Nested brackets of one expression, decided here."""
 
 _NUMBER = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
@@ -88,25 +88,32 @@ def is_true(value: float) -> bool:
 def evaluate(scanner: Scanner, memory: Memory, *, condition: bool = False) -> float:
     """Take an expression and return its value; in a condition '=' compares."""
     start = scanner.pos
+    _deeper(scanner)
     try:
         value = float(_Evaluation(scanner, memory, condition=condition).disjunction())
     except (ZeroDivisionError, OverflowError, ValueError) as problem:
         raise scanner.error(f"expression cannot be computed: {problem}", start) from None
+    scanner.depth -= 1
     if not math.isfinite(value):
         raise scanner.error("expression cannot be computed: the value is too large", start)
     return value
 
 
+def _deeper(scanner: Scanner) -> None:
+    scanner.depth += 1
+    if scanner.depth > MAX_DEPTH:
+        raise scanner.error(f"expected at most {MAX_DEPTH} nested brackets")
+
+
 class _Evaluation:
     """One run over an expression, from the loosest binding operator down."""
 
-    __slots__ = ("_compare", "_depth", "_memory", "_scanner")
+    __slots__ = ("_compare", "_memory", "_scanner")
 
     def __init__(self, scanner: Scanner, memory: Memory, *, condition: bool) -> None:
         self._scanner = scanner
         self._memory = memory
         self._compare = _COMPARE_IN_CONDITION if condition else _COMPARE
-        self._depth = 0
 
     def disjunction(self) -> float:
         value = self._conjunction()
@@ -158,9 +165,9 @@ class _Evaluation:
         value = self._operand()
         if not self._scanner.accept("**"):
             return value
-        self._deeper()
+        _deeper(self._scanner)
         exponent = self._signed()
-        self._depth -= 1
+        self._scanner.depth -= 1
         return math.pow(value, exponent)
 
     def _operand(self) -> float:
@@ -170,20 +177,20 @@ class _Evaluation:
         if scanner.peek() == "[":
             return self._bracket()
         if scanner.accept("!"):
-            self._deeper()
+            _deeper(scanner)
             value = float(not is_true(self._operand()))
-            self._depth -= 1
+            scanner.depth -= 1
             return value
         if _MEMORY.match(scanner.text, scanner.pos):
             return self._memory.read(scanner)
         return self._function()
 
     def _bracket(self) -> float:
-        self._deeper()
+        _deeper(self._scanner)
         self._scanner.expect("[")
         value = self.disjunction()
         self._scanner.expect("]")
-        self._depth -= 1
+        self._scanner.depth -= 1
         return value
 
     def _function(self) -> float:
@@ -198,8 +205,3 @@ class _Evaluation:
             known = ", ".join(FUNCTIONS)
             raise scanner.error(f"expected a number or a function ({known}), found '{name}'", word.start())
         return float(FUNCTIONS[name](self._bracket()))
-
-    def _deeper(self) -> None:
-        self._depth += 1
-        if self._depth > MAX_DEPTH:
-            raise self._scanner.error(f"expected at most {MAX_DEPTH} nested brackets")

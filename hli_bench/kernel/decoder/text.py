@@ -84,12 +84,13 @@ class BlockText:
 class Scanner:
     """A place in a block's text that moves on as words are taken."""
 
-    __slots__ = ("block", "pos", "text")
+    __slots__ = ("block", "depth", "pos", "text")
 
     def __init__(self, block: BlockText) -> None:
         self.block = block
         self.text = block.text
         self.pos = 0
+        self.depth = 0
 
     def skip(self) -> None:
         """Move over blanks."""
@@ -97,6 +98,11 @@ class Scanner:
         while pos < len(text) and text[pos].isspace():
             pos += 1
         self.pos = pos
+
+    @property
+    def start(self) -> int:
+        """Return the offset of the first word."""
+        return len(self.text) - len(self.text.lstrip())
 
     def at_end(self) -> bool:
         """Tell whether only blanks are left."""
@@ -207,6 +213,8 @@ def _clean(raw: str, file: str, line: int, brackets: list[int]) -> _Cleaned:
     pos = 0
     while mark := _MARK.search(text, pos):
         token, pos = mark.group(), mark.end()
+        if token[0] == '"' and (token == '"' or token[-1] != '"'):
+            raise InputError("expected a closing quote for this text", file, line, mark.start() + 1)
         if token == ";":
             return _Cleaned(text[: mark.start()], brackets, continued=False)
         if token == "(":

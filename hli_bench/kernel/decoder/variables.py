@@ -4,14 +4,15 @@ import re
 from typing import Final
 
 from hli_bench.base.ids import AxisIndex
-from hli_bench.kernel.decoder import faults
 from hli_bench.kernel.decoder.context import Context
 from hli_bench.kernel.decoder.coordinates import rounded
 from hli_bench.kernel.decoder.expressions import evaluate
-from hli_bench.kernel.decoder.faults import CncStop, Fault
+from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.text import Scanner
+from hli_bench.manual.errors import decoder as errors
+from hli_bench.manual.errors.record import ErrorSheet
 
-_PARAMETER = re.compile(r"(P+)([0-9]+|(?=\[))", re.IGNORECASE)
+_PARAMETER = re.compile(r"(P+)([0-9]{1,9}|(?=\[))", re.IGNORECASE)
 _VARIABLE = re.compile(r"V\.([A-Z]+)\.([A-Z_][A-Z0-9_]*(?:\.[A-Z_][A-Z0-9_]*)*)", re.IGNORECASE)
 _OWN: Final = frozenset("PLSE")
 """Own variables. V.E. is kept by the program alone: the PLC does not see it yet."""
@@ -113,7 +114,7 @@ class Variables:
         if area in _OWN:
             return self._own_key(scanner, area, name)
         if area in ("A", "G"):
-            raise self._stop(scanner, faults.WRITE_DENIED, f"V.{area}.{name}")
+            raise self._stop(scanner, errors.VARIABLE_WRITE_DENIED, f"V.{area}.{name}")
         raise self._unknown(scanner, area, name, start)
 
     def _parameter(self, scanner: Scanner) -> int | None:
@@ -122,7 +123,7 @@ class Variables:
         if found is None:
             return None
         if found.group(2):
-            number = int(found.group(2)[:9])
+            number = int(found.group(2))
         else:
             scanner.expect("[")
             number = self._whole(scanner, evaluate(scanner, self), "parameter number")
@@ -164,31 +165,27 @@ class Variables:
         if scanner.text[scanner.pos : scanner.pos + 1] == "[":
             index = AxisIndex(self._index(scanner))
             if index not in self._context.axes:
-                raise self._stop(scanner, faults.WRONG_INDEX, f"V.A.{name}", index=index)
+                raise self._stop(scanner, errors.VARIABLE_INDEX, f"V.A.{name}[{index}]")
         else:
             name, _, axis_name = name.rpartition(".")
             axis = self._context.by_name.get(axis_name)
             if axis is None:
-                raise self._stop(scanner, faults.UNKNOWN_AXIS, f"V.A.{name}", axis=axis_name)
+                raise self._stop(scanner, errors.VARIABLE_UNKNOWN_AXIS, f"V.A.{name}.{axis_name}")
             index = axis.index
         if name in _NOT_YET:
             raise scanner.not_emulated(f"V.A.{name}: this variable has no value here yet", start)
         if name not in _READS or not self._context.path_axis(index):
-            raise self._stop(scanner, faults.UNKNOWN_VARIABLE, f"V.A.{name}")
+            raise self._stop(scanner, errors.UNKNOWN_VARIABLE, f"V.A.{name}")
         if name in _NEED_VALUE:
             return self._measured(scanner, name, index)
         return self._position(name, index)
 
-    def _measured(self, scanner: Scanner, name: str, axis: AxisIndex) -> float:
+    def _measured(self, scanner: Scanner, variable: str, axis: AxisIndex) -> float:
         values = self._context.measurements
         if not values.has_value(axis):
-            raise CncStop(
-                faults.NO_MEASURED_VALUE,
-                scanner.block.source,
-                axis=self._context.axes[axis].name,
-                values={"variable": f"V.A.{name}"},
-            )
-        match name:
+            name = self._context.axes[axis].name
+            raise CncStop(errors.OFFSET_NOT_REQUESTED, scanner.block.source, name, axis=name)
+        match variable:
             case "MESS":
                 return values.with_offsets(axis)
             case "MOFFS":
@@ -223,7 +220,7 @@ class Variables:
     def _unknown(self, scanner: Scanner, area: str, name: str, at: int) -> Exception:
         if area in _NOT_YET_AREAS:
             return scanner.not_emulated(f"V.{area}.{name}: this variable has no value here yet", at)
-        return self._stop(scanner, faults.UNKNOWN_VARIABLE, f"V.{area}.{name}")
+        return self._stop(scanner, errors.UNKNOWN_VARIABLE, f"V.{area}.{name}")
 
-    def _stop(self, scanner: Scanner, fault: Fault, variable: str, **values: float | str) -> CncStop:
-        return CncStop(fault, scanner.block.source, values={"variable": variable, **values})
+    def _stop(self, scanner: Scanner, sheet: ErrorSheet, variable: str) -> CncStop:
+        return CncStop(sheet, scanner.block.source, variable)

@@ -8,12 +8,13 @@ from typing import Final
 from hli_bench.base.errors import BenchError
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.blocks import Dwell, Home, Line, MeasuringRun, ProgramEnd
-from hli_bench.kernel.decoder import faults
 from hli_bench.kernel.decoder.context import Context, Steps
+from hli_bench.kernel.decoder.coordinates import rounded
 from hli_bench.kernel.decoder.expressions import evaluate
 from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.text import Scanner
 from hli_bench.kernel.decoder.variables import Variables
+from hli_bench.manual.errors import decoder as errors
 
 _G_WORD = re.compile(r"G([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE)
 _M_WORD = re.compile(r"M([0-9]+)", re.IGNORECASE)
@@ -120,7 +121,7 @@ class WordReader:
         _modal(context, words, scanner)
         special = [number for number in words.functions if number in TAKING_AXES]
         if special.count(100) > 1:
-            raise CncStop(faults.TWO_MEASURING_FUNCTIONS, scanner.block.source)
+            raise CncStop(errors.MEASURING_FUNCTION_TWICE, scanner.block.source)
         if len(special) > 1:
             both = " and ".join(f"G{number}" for number in special)
             raise scanner.error(f"expected one of {both} in a block: each takes the axis words", words.at)
@@ -136,7 +137,7 @@ class WordReader:
             yield ProgramEnd(source=scanner.block.source)
 
     def _words(self, scanner: Scanner) -> Words:
-        words = Words()
+        words = Words(at=scanner.start)
         while not scanner.at_end():
             if self._memory.at_name(scanner):
                 self._memory.assign(scanner)
@@ -146,7 +147,11 @@ class WordReader:
                 words.functions.append(_g_number(scanner, found))
                 words.at = found.start()
             elif found := scanner.match(self._axis):
-                words.axes.append(self._axis_word(scanner, found))
+                axis, value = self._axis_word(scanner, found)
+                if any(axis == other for other, _ in words.axes):
+                    name = found.group().upper()
+                    raise scanner.error(f"expected axis {name} once in a block", found.start())
+                words.axes.append((axis, value))
             else:
                 self._letter(scanner, words)
         return words
@@ -247,7 +252,7 @@ def _positions(context: Context, words: Words, scanner: Scanner) -> Steps:
 
 def _line(context: Context, words: Words, scanner: Scanner) -> Steps:
     if not context.rapid and not context.feed:
-        raise scanner.error("no feed (F) programmed for G01", 0)
+        raise scanner.error("no feed (F) programmed for G01", words.at)
     yield from _positions(context, words, scanner)
     target = context.coordinates.move(words.axes, absolute=context.absolute)
     if target:
@@ -258,7 +263,7 @@ def _line(context: Context, words: Words, scanner: Scanner) -> Steps:
 def _measuring_run(context: Context, words: Words, scanner: Scanner) -> Steps:
     kind, where = context.measuring_type, context.coordinates
     if kind in WITHOUT_G100:
-        raise CncStop(faults.G100_NOT_ALLOWED, scanner.block.source, values={"type": kind})
+        raise CncStop(errors.G100_WRONG_TYPE, scanner.block.source, kind)
     _need_axes(words, scanner, "G100")
     if not context.feed and kind != FEED_FROM_AXIS:
         raise scanner.error("no feed (F) programmed for G100", words.at)
@@ -281,7 +286,7 @@ def _home(context: Context, words: Words, scanner: Scanner) -> Steps:
     ranks: dict[AxisIndex, int] = {}
     for axis, rank in words.axes:
         if rank != int(rank) or rank < 1:
-            raise scanner.error(f"G74: expected a rank (1, 2, ...) after the axis, found {rank:g}", words.at)
+            raise CncStop(errors.HOMING_RANK_RANGE, scanner.block.source)
         ranks[axis] = int(rank)
     context.coordinates.forget(list(ranks), keep_programmed=False)
     context.moved()
@@ -303,17 +308,21 @@ def _include(context: Context, words: Words, scanner: Scanner) -> Steps:
     for axis, factor in words.axes:
         name = context.axes[axis].name
         if not measured.has_value(axis):
-            raise CncStop(faults.NO_MEASURED_VALUE, source, axis=name)
-        if context.coordinates.included[axis]:
-            raise CncStop(faults.OFFSET_STILL_INCLUDED, source, axis=name)
-        context.coordinates.set_included(axis, round(factor * measured.distance(axis), 9) + 0.0)
+            raise CncStop(errors.OFFSET_NOT_REQUESTED, source, name, axis=name)
+        if axis in context.coordinates.including:
+            raise CncStop(errors.OFFSET_ALREADY_INCLUDED, source, name, axis=name)
+        context.coordinates.include(axis, rounded(factor * measured.distance(axis)))
 
 
 def _exclude(context: Context, words: Words, scanner: Scanner) -> Steps:
+    """G102: the named axes, without any all that have an offset included (decided here)."""
     yield from ()
-    _need_axes(words, scanner, "G102")
-    for axis, _ in words.axes:
-        context.coordinates.set_included(axis, 0.0)
+    where = context.coordinates
+    for axis in [axis for axis, _ in words.axes] or sorted(where.including):
+        if axis not in where.including:
+            name = context.axes[axis].name
+            raise CncStop(errors.OFFSET_NOT_INCLUDED, scanner.block.source, name, axis=name)
+        where.exclude(axis)
 
 
 def _need_axes(words: Words, scanner: Scanner, function: str) -> None:

@@ -5,16 +5,17 @@ import re
 from hli_bench.kernel.decoder.context import Context, Steps
 from hli_bench.kernel.decoder.coordinates import MAX_FRAMES, frame
 from hli_bench.kernel.decoder.expressions import evaluate
+from hli_bench.kernel.decoder.faults import CncStop, cnc_error
 from hli_bench.kernel.decoder.text import Scanner
 from hli_bench.kernel.decoder.variables import Variables
+from hli_bench.manual.errors import decoder as errors
 
 _WORD = re.compile(r"[A-Z]+", re.IGNORECASE)
 _ALL = re.compile(r"ALL\b", re.IGNORECASE)
 
 
 def run(context: Context, memory: Variables, scanner: Scanner) -> Steps:
-    """Change the stack of systems; #CS OFF without an active one does nothing (decided here)."""
-    yield from ()
+    """Change the stack of systems."""
     found = scanner.match(_WORD)
     word = found.group().upper() if found else ""
     if word in ("DEF", "ADD", "MODE", "SELECT"):
@@ -25,10 +26,12 @@ def run(context: Context, memory: Variables, scanner: Scanner) -> Steps:
     if where.main is None:
         raise scanner.error("#CS: expected a channel with the three main axes X, Y and Z")
     if word == "OFF":
+        if not where.depth:
+            yield cnc_error(errors.CS_OFF_WITHOUT_ON, scanner.block.source)
         where.pop(everything=scanner.match(_ALL) is not None)
         return
     if where.depth == MAX_FRAMES:
-        raise scanner.error(f"expected at most {MAX_FRAMES} active #CS systems")
+        raise CncStop(errors.CS_STACK, scanner.block.source)
     where.push(frame(_values(memory, scanner)))
 
 

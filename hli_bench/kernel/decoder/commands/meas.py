@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from hli_bench.kernel.blocks import MeasureSettings
-from hli_bench.kernel.decoder import faults
 from hli_bench.kernel.decoder.configuration import DecoderAxis
 from hli_bench.kernel.decoder.context import Context, Steps
 from hli_bench.kernel.decoder.expressions import evaluate
@@ -13,6 +12,7 @@ from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.keywords import Keyword, Kind, axis_of, keywords
 from hli_bench.kernel.decoder.text import Scanner
 from hli_bench.kernel.decoder.variables import Variables
+from hli_bench.manual.errors import decoder as errors
 
 if TYPE_CHECKING:
     from hli_bench.base.ids import AxisIndex
@@ -93,7 +93,7 @@ def _mode(context: Context, memory: Variables, scanner: Scanner) -> None:
 
 def _set_type(context: Context, scanner: Scanner, value: float) -> None:
     if value != int(value) or not 1 <= value <= MAX_TYPE:
-        raise CncStop(faults.TYPE_OUT_OF_RANGE, scanner.block.source, values={"type": value})
+        raise CncStop(errors.MEASURING_TYPE_RANGE, scanner.block.source, value)
     if value == MAX_TYPE:
         raise scanner.not_emulated("measurement type 8: edge banding over several blocks")
     context.measuring_type = int(value)
@@ -121,12 +121,9 @@ def _settings(context: Context, memory: Variables, scanner: Scanner) -> Steps:
         if keyword.name in _NOT_BUILT:
             raise scanner.not_emulated(f"#MEAS {keyword.name}: {_NOT_BUILT[keyword.name]}", keyword.at)
         if keyword.name in ("AX", "AXNR"):
-            axis = axis_of(scanner, context, keyword)
-            if not axis.measuring:
-                raise CncStop(faults.NOT_A_MEASUREMENT_AXIS, scanner.block.source, axis=axis.name)
-            groups.append(_Group(axis))
+            groups.append(_Group(axis_of(scanner, context, keyword)))
         elif keyword.name in groups[-1].seen:
-            raise CncStop(faults.KEYWORD_TWICE, scanner.block.source, values={"keyword": keyword.name})
+            raise CncStop(errors.MEAS_KEYWORD_TWICE, scanner.block.source)
         else:
             groups[-1].seen[keyword.name] = keyword
     yield from _general(context, scanner, groups)

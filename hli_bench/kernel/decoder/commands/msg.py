@@ -4,12 +4,12 @@ import re
 from typing import Final
 
 from hli_bench.kernel.blocks import Text
-from hli_bench.kernel.decoder import faults
 from hli_bench.kernel.decoder.context import Context, Steps
 from hli_bench.kernel.decoder.expressions import evaluate
 from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.text import Scanner
 from hli_bench.kernel.decoder.variables import Variables
+from hli_bench.manual.errors import decoder as errors
 
 _WORD = re.compile(r"[A-Z_]+", re.IGNORECASE)
 _STRING = re.compile(r'"([^"]*)"')
@@ -53,11 +53,7 @@ def _fill(scanner: Scanner, template: str, values: list[Value], at: int) -> str:
     rest = list(values)
     wanted = sum(found.group(2) != "%" for found in _CONVERSION.finditer(template))
     if wanted != len(values):
-        raise CncStop(
-            faults.MESSAGE_VALUE_COUNT,
-            scanner.block.source,
-            values={"wanted": wanted, "given": len(values)},
-        )
+        raise CncStop(errors.MESSAGE_VALUES, scanner.block.source)
 
     def put(found: re.Match[str]) -> str:
         flags, kind = found.groups()

@@ -3,11 +3,9 @@
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 import pytest
-from decoding import decode, state
-
-from hli_bench.kernel.blocks import MachineState
 
 CASES = Path(__file__).parents[3] / "nc"
 FOLDERS = sorted(folder for folder in CASES.iterdir() if folder.is_dir())
@@ -29,15 +27,12 @@ def case(folder: Path) -> object:
     return pytest.param(folder, id=folder.name, marks=marks)
 
 
-def answers(folder: Path) -> list[MachineState]:
-    file = folder / "answers.json"
-    return [state(**answer) for answer in json.loads(file.read_text())] if file.exists() else []
-
-
 @pytest.mark.parametrize("folder", [case(folder) for folder in FOLDERS])
-def test_case(folder: Path) -> None:
+def test_case(folder: Path, decode: Any, state: Any) -> None:
+    script = folder / "answers.json"
+    answers = [state(**answer) for answer in json.loads(script.read_text())] if script.exists() else []
     with (folder / "program.nc").open() as program:
-        items = decode(program, answers(folder))
+        items = decode(program, answers)
     got = [repr(item) for item in items]
     expected = folder / "expected.blocks"
     if os.environ.get("HLI_BENCH_WRITE_GOLDEN"):

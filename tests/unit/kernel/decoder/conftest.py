@@ -1,6 +1,8 @@
 """Runs the decoder with a scripted machine."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+
+import pytest
 
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.blocks import Flush, MachineState, Text
@@ -16,7 +18,7 @@ AXES = (
 NAMES = {axis.name: axis.index for axis in AXES}
 
 
-def state(
+def _state(
     command: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
     *,
     actual: Sequence[float] | None = None,
@@ -34,7 +36,7 @@ def state(
     )
 
 
-def decode(
+def _decode(
     program: str | Iterable[str],
     answers: Sequence[MachineState] = (),
     *,
@@ -44,7 +46,7 @@ def decode(
     """Return all items of a program; the last answer serves all further queries."""
     lines = program.splitlines(keepends=True) if isinstance(program, str) else program
     blocks = Decoder(lines, "test.nc", axes, DecoderDefaults(measuring_type)).blocks()
-    script = list(answers) or [state()]
+    script = list(answers) or [_state()]
     items: list[Item] = []
     answer: MachineState | None = None
     while True:
@@ -58,6 +60,21 @@ def decode(
             answer = script.pop(0) if len(script) > 1 else script[0]
 
 
-def texts(items: Iterable[Item]) -> list[str]:
+def _texts(items: Iterable[Item]) -> list[str]:
     """Return the texts of the #MSG blocks."""
     return [item.text for item in items if isinstance(item, Text)]
+
+
+@pytest.fixture(scope="session")
+def state() -> Callable[..., MachineState]:
+    return _state
+
+
+@pytest.fixture(scope="session")
+def decode() -> Callable[..., list[Item]]:
+    return _decode
+
+
+@pytest.fixture(scope="session")
+def texts() -> Callable[..., list[str]]:
+    return _texts

@@ -22,6 +22,7 @@ from hli_bench.laws.rows import (
     W_PATH_DONE,
     W_PROBE_STATUS,
     W_SEGMENT,
+    W_STANDSTILL_LAG_OVER,
     W_STATUSWORD,
     Rows,
 )
@@ -34,17 +35,16 @@ def wrap32(value: int) -> int:
 
 
 @law
-def take_feedback(axis: Rows, history: Rows, number: int, position: int, cycle: int) -> None:
-    """Take a received actual position (I32 increments) of one axis: unwrap it, convert it, keep it."""
+def take_feedback(axis: Rows, history: Rows, number: int, cycle: int) -> None:
+    """Take the received actual position of one axis: unwrap it, convert it, keep it in the history."""
     row = axis[number]
-    row["feedback"] += wrap32(position - row["feedback"])
+    row["feedback"] += wrap32(row["received"] - row["feedback"])
     history[cycle % HISTORY_CYCLES, number] = row["feedback"]
     row["actual"] = (row["feedback"] - row["reference"]) / row["increments_per_unit"]
     if row["mode"] == FOLLOW:
         row["command"] = row["actual"]
-        row["past"][0] = row["actual"]
-        row["past"][1] = row["actual"]
-    row["lag"] = row["past"][1] - row["actual"]
+        row["past"] = row["actual"]
+    row["lag"] = row["past"] - row["actual"]
 
 
 @law
@@ -74,6 +74,8 @@ def holds(axis: Rows, path: Rows, watch: Rows, history: Rows, number: int, cycle
         return one["velocity"] == 0.0 and one["jog_velocity"] == 0.0
     if kind == W_LAG_OVER:
         return abs(one["lag"]) > row["limit"]
+    if kind == W_STANDSTILL_LAG_OVER:
+        return one["velocity"] == 0.0 and abs(one["lag"]) > row["limit"]
     if kind == W_LAG_WITHIN:
         return abs(one["lag"]) <= row["limit"]
     if kind == W_PROBE_STATUS:
@@ -114,7 +116,26 @@ def ask_watches(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) 
 
 
 @law
-def walk_path(path: Rows, segment: Rows, time: float) -> None:
+def sense(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) -> int:
+    """First half of a kernel cycle: actual values, history, conditions; return how many of these are now met."""
+    for number in range(axis.shape[0]):
+        take_feedback(axis, history, number, cycle)
+    return ask_watches(axis, path, watch, history, cycle)
+
+
+@law
+def path_held(axis: Rows, path: Rows, one: Rows) -> bool:
+    """Tell whether the path must stand: feedhold of the channel, or an axis it moves is not released."""
+    if path[0]["hold"]:
+        return True
+    for number in range(axis.shape[0]):
+        if one["moves"][number] and axis[number]["released"] == 0:
+            return True
+    return False
+
+
+@law
+def walk_path(axis: Rows, path: Rows, segment: Rows, time: float) -> None:
     """Advance along the prepared segments by `time` seconds."""
     row = path[0]
     while time > 0.0 and row["state"] != IDLE:
@@ -132,7 +153,7 @@ def walk_path(path: Rows, segment: Rows, time: float) -> None:
             low = row["brake"][0]
             high = row["brake"][1]
             split = row["brake_split"]
-        elif row["hold"]:
+        elif path_held(axis, path, one):
             wanted = 0.0
             low = one["hold"][0]
             high = one["hold"][1]
@@ -164,8 +185,7 @@ def walk_path(path: Rows, segment: Rows, time: float) -> None:
             return
         row["head"] += 1
         row["s"] = 0.0
-        following = segment[row["head"] % SEGMENTS]
-        row["v"] = v * following["v_start"] / one["v_end"] if one["v_end"] > 0.0 else 0.0
+        row["v"] = v
 
 
 @law
@@ -174,12 +194,11 @@ def act(axis: Rows, path: Rows, segment: Rows, cycle_ns: int) -> None:
     time = cycle_ns * 1e-9
     running = path[0]["state"] != IDLE
     if running:
-        walk_path(path, segment, time)
+        walk_path(axis, path, segment, time)
     one = segment[path[0]["head"] % SEGMENTS]
     for number in range(axis.shape[0]):
         row = axis[number]
-        row["past"][1] = row["past"][0]
-        row["past"][0] = row["command"]
+        row["past"] = row["command"]
         before = row["command"]
         mode = row["mode"]
         if mode == PATH and running and one["moves"][number]:
@@ -189,7 +208,8 @@ def act(axis: Rows, path: Rows, segment: Rows, cycle_ns: int) -> None:
                 row["command"] = one["start"][number] + one["direction"][number] * path[0]["s"]
             row["velocity"] = (row["command"] - before) / time
         elif mode == JOG:
-            way, v = ramp(row["velocity"], row["jog_velocity"], row["jog_acceleration"], time)
+            wanted = row["jog_velocity"] if row["released"] else 0.0
+            way, v = ramp(row["velocity"], wanted, row["jog_acceleration"], time)
             row["command"] = before + way
             row["velocity"] = v
         else:

@@ -20,7 +20,7 @@ NEVER = np.iinfo(np.int64).max
 @law
 def wrap32(value: int) -> int:
     """Return `value` as it shows in a signed 32-bit object."""
-    return (value + 0x80000000) % 0x100000000 - 0x80000000
+    return (int(value) + 0x80000000) % 0x100000000 - 0x80000000
 
 
 @law
@@ -80,9 +80,12 @@ def servo_torque(servo: Rows, axis: int, demand: float, feed_forward: float, tim
 
 @law
 def probe_edge(
-    servo: Rows, axis: int, number: int, level: int, position: int, at_ns: int, zero_pulse: int
+    servo: Rows, axis: int, number: int, level: int, position: int, at_dc_ns: int, zero_pulse: int
 ) -> None:
-    """Latch a touch probe input's edge (CiA 402, 60B8..60BD): input `number` 0 or 1, or the zero pulse."""
+    """Latch a touch probe input's edge (CiA 402, 60B8..60BD): input `number` 0 or 1, or the zero pulse.
+
+    The time latch (60D1..60D4) holds the low 32 bits of the DC time.
+    """
     row = servo[axis]
     shift = 8 * number
     function = row["probe_function"] >> shift
@@ -95,7 +98,7 @@ def probe_edge(
         return
     slot = 2 * number + (0 if level else 1)
     row["latch"][slot] = wrap32(position)
-    row["latch_time"][slot] = at_ns % 0x100000000
+    row["latch_time"][slot] = at_dc_ns % 0x100000000
     row["probe_status"] |= stored
 
 
@@ -117,14 +120,15 @@ def probe_arm(servo: Rows, axis: int) -> None:
 
 
 @law
-def channel_edge(channel: Rows, number: int, level: int, at_ns: int, dc_epoch_ns: int) -> None:
-    """Take an edge into a terminal channel: time latch after the input delay, level behind the filter."""
+def channel_settle(channel: Rows, number: int, now_ns: int, dc_epoch_ns: int) -> None:
+    """Let an edge whose input delay is over by `now_ns` through: level and time latch."""
     row = channel[number]
-    due = at_ns + row["delay_ns"]
-    if row["level_due_ns"] != NEVER:
-        row["level"] = row["level_next"]
-    row["level_next"] = level
-    row["level_due_ns"] = due
+    due = row["level_due_ns"]
+    if due > now_ns:
+        return
+    level = row["level_next"]
+    row["level"] = level
+    row["level_due_ns"] = NEVER
     bit = 1 if level else 2
     if row["single_event"] and row["taken"] & bit:
         return
@@ -136,12 +140,22 @@ def channel_edge(channel: Rows, number: int, level: int, at_ns: int, dc_epoch_ns
 
 
 @law
-def channel_image(channel: Rows, number: int, now_ns: int) -> None:
-    """Refresh what the process image shows at `now_ns`; reading frees the latches of single-event mode."""
+def channel_edge(channel: Rows, number: int, level: int, at_ns: int, dc_epoch_ns: int) -> None:
+    """Take an edge into a terminal channel; a pulse shorter than the input delay does not get through."""
+    channel_settle(channel, number, at_ns, dc_epoch_ns)
     row = channel[number]
-    if row["level_due_ns"] <= now_ns:
-        row["level"] = row["level_next"]
+    if level == row["level"]:
         row["level_due_ns"] = NEVER
+    else:
+        row["level_next"] = level
+        row["level_due_ns"] = at_ns + row["delay_ns"]
+
+
+@law
+def channel_image(channel: Rows, number: int, now_ns: int, dc_epoch_ns: int) -> None:
+    """Refresh what the process image shows at `now_ns`; reading frees the latches of single-event mode."""
+    channel_settle(channel, number, now_ns, dc_epoch_ns)
+    row = channel[number]
     row["input"] = row["level"]
     row["status"] = 0
     if row["single_event"]:
@@ -190,7 +204,7 @@ def distribute(
         for i in range(2):
             if row["probe_signal"][i] == number:
                 angle = row["angle_before"] + part * (row["angle"] - row["angle_before"])
-                probe_edge(servo, axis, i, level, count(servo, axis, angle), at_ns, 0)
+                probe_edge(servo, axis, i, level, count(servo, axis, angle), dc_epoch_ns + at_ns, 0)
         for i in range(8):
             if row["input_signal"][i] == number:
                 if level:
@@ -225,6 +239,8 @@ def switch_change(switch: Rows, number: int, before: float, after: float, begin_
     if not low <= after <= high:
         return -1
     row["state"] = 1
+    if low <= before <= high:
+        return begin_ns + 1
     return crossing(before, after, low if before < low else high, begin_ns, step_ns)
 
 
@@ -251,8 +267,8 @@ def switches(
         put_pending(pending, at, switch[s]["signal"], change)
         bounce = switch[s]["bounce_ns"]
         if bounce > 0:
-            put_pending(pending, at + bounce // 4, switch[s]["signal"], -change)
-            put_pending(pending, at + bounce // 2, switch[s]["signal"], change)
+            put_pending(pending, at + bounce // 2, switch[s]["signal"], -change)
+            put_pending(pending, at + bounce, switch[s]["signal"], change)
     end_ns = begin_ns + step_ns
     while True:
         first = -1
@@ -285,7 +301,7 @@ def put_pending(pending: Rows, at_ns: int, signal: int, change: int) -> None:
 
 
 @law
-def zero_pulses(servo: Rows, axis: int, begin_ns: int, step_ns: int) -> None:
+def zero_pulses(servo: Rows, axis: int, begin_ns: int, step_ns: int, dc_epoch_ns: int) -> None:
     """Latch the encoder's zero pulse when this sub-step passes it and an input is armed for it."""
     row = servo[axis]
     if row["probe_function"] & 0x0404 == 0:
@@ -306,7 +322,7 @@ def zero_pulses(servo: Rows, axis: int, begin_ns: int, step_ns: int) -> None:
     at = begin_ns + int(math.floor((pulse - before) / (after - before) * step_ns + 0.5))
     position = pulse + row["zero_pulse"] + row["encoder_offset"]
     for number in range(2):
-        probe_edge(servo, axis, number, 1, position, at, 1)
+        probe_edge(servo, axis, number, 1, position, dc_epoch_ns + at, 1)
 
 
 @law
@@ -319,7 +335,10 @@ def supervise(servo: Rows, axis: int, cycle_ns: int) -> None:
     else:
         row["status_flags"] |= 0x2000
         row["following_elapsed_ns"] += cycle_ns
-        if row["following_elapsed_ns"] > row["following_timeout_ms"] * 1_000_000 and row["fault"] == 0:
+        if (
+            row["following_elapsed_ns"] > np.int64(row["following_timeout_ms"]) * 1_000_000
+            and row["fault"] == 0
+        ):
             row["fault"] = FOLLOWING_ERROR
     if row["enabled"]:
         row["status_flags"] |= 0x1000
@@ -352,7 +371,13 @@ def advance_machine(
             row["demand_from"] = float(count(servo, axis, row["angle"]))
             row["integrator"] = 0.0
             row["speed"] = 0.0
-            row["angle_before"] = row["angle"]
+        row["angle_before"] = row["angle"]
+    for number in range(signal.shape[0]):
+        # a signal that was forced or let go since the last cycle changes at its begin
+        if signal_level(signal, number) != signal[number]["level"]:
+            distribute(
+                servo, signal, channel, edge, edges, number, begin_ns + 1, begin_ns, step_ns, dc_epoch_ns
+            )
     for sub in range(sub_steps):
         begin = begin_ns + sub * step_ns
         part = (sub + 1) / sub_steps
@@ -365,11 +390,11 @@ def advance_machine(
             torque = servo_torque(servo, axis, demand, whole / cycle, time)
             row["torque"] = torque
             mechanics(servo, axis, torque, time)
-            zero_pulses(servo, axis, begin, step_ns)
+            zero_pulses(servo, axis, begin, step_ns, dc_epoch_ns)
         switches(servo, switch, signal, channel, edge, edges, pending, begin, step_ns, dc_epoch_ns)
     now_ns = begin_ns + cycle_ns
     for c in range(channel.shape[0]):
-        channel_image(channel, c, now_ns)
+        channel_image(channel, c, now_ns, dc_epoch_ns)
     faults = 0
     for axis in range(axes):
         row = servo[axis]
@@ -393,6 +418,6 @@ def advance_machine(
 def servo_span(servo: Rows, axis: int) -> float:
     """Return the way (increments) from the present demand to the newest target, the short way round 32 bits."""
     row = servo[axis]
-    return float(wrap32(row["target"] - int(math.floor(row["demand_from"] + 0.5)))) + (
+    return float(wrap32(np.int64(row["target"]) - int(math.floor(row["demand_from"] + 0.5)))) + (
         math.floor(row["demand_from"] + 0.5) - row["demand_from"]
     )

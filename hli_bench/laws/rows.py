@@ -47,18 +47,21 @@ W_PROBE_STATUS: Final = 7
 W_STATUSWORD: Final = 8
 W_DIGITAL_INPUT: Final = 9
 W_CYCLE: Final = 10
+W_STANDSTILL_LAG_OVER: Final = 11
 
 AXIS: Final = np.dtype(
     [
         ("command", "f8"),  # set point, ACS, 0.1 um
         ("velocity", "f8"),  # of the set point, 0.1 um/s
-        ("past", "f8", (2,)),  # set points of the last two cycles: what the drive has by now been told
-        ("feedback", "i8"),  # actual position as the drive reports it, unwrapped, increments
+        ("past", "f8"),  # set point of the cycle before: where a drive without lag stands at the next SYNC
+        ("received", "i4"),  # actual position in the newest telegram, increments
+        ("feedback", "i8"),  # the same, unwrapped
         ("increments_per_unit", "f8"),  # increments per 0.1 um, negative when the drive counts the other way
         ("reference", "i8"),  # increments at ACS position 0
         ("actual", "f8"),  # ACS, 0.1 um
         ("lag", "f8"),  # set point minus actual position, 0.1 um
         ("mode", "u1"),
+        ("released", "u1"),  # feed released: without it the axis, and a path that moves it, brakes
         ("jog_velocity", "f8"),  # wanted velocity of a JOG, signed, 0.1 um/s
         ("jog_acceleration", "f8"),  # 0.1 um/s2
         ("target", "i4"),  # what goes into the command telegram, increments
@@ -228,7 +231,7 @@ def segment_dtype(axes: int) -> np.dtype[Any]:
             ("length", "f8"),
             ("feed", "f8"),
             ("rapid", "u1"),  # the feed override does not act above 100 %
-            ("v_start", "f8"),
+            ("v_start", "f8"),  # greatest velocity at which the axes may enter it
             ("v_end", "f8"),
             ("acceleration", "f8", (2,)),  # below / above `split`
             ("deceleration", "f8", (2,)),
@@ -245,7 +248,7 @@ def segment_dtype(axes: int) -> np.dtype[Any]:
 
 @dataclass(slots=True)
 class KernelRows:
-    """The kernel's numbers: `axis` (n,), `path` (1,), `segment` (SEGMENTS,), `watch` (m,), `history` (H, n)."""
+    """The kernel's numbers: axis (n,), path (1,), segment (SEGMENTS,), watch (m,), history (H, n), log (L, n)."""
 
     axis: Rows
     path: Rows
@@ -266,6 +269,7 @@ class KernelRows:
             log=np.zeros((LOG_CYCLES, axes), LOG),
         )
         rows.axis["increments_per_unit"] = 1.0
+        rows.axis["released"] = 1
         rows.path["override"] = 1.0
         return rows
 

@@ -7,7 +7,7 @@ fault, and behind `sense` when a condition fired. `phase` says where to begin, t
 from typing import Final
 
 from hli_bench.laws.compiled import law
-from hli_bench.laws.control import act, ask_watches, take_feedback, write_log
+from hli_bench.laws.control import act, sense, write_log
 from hli_bench.laws.machine import advance_machine
 from hli_bench.laws.rows import LOG_CYCLES, Rows
 
@@ -16,24 +16,27 @@ MACHINE: Final = 0
 SENSE: Final = 1
 """Machine has moved, the kernel has not looked yet; as a result: a drive raised a fault."""
 ACT: Final = 2
-"""Kernel has looked, not interpolated yet; as a result: conditions fired, or the caller asked to stop there."""
+"""Kernel has looked, not interpolated yet; as a result: conditions fired, or the caller wants to."""
 
 
 @law
 def exchange_out(axis: Rows, servo: Rows) -> None:
-    """Command telegrams: what the kernel wrote in the last cycle takes effect at the drives."""
+    """Command telegrams: the targets sent after the last SYNC take effect with this one.
+
+    Control and latch control words are not in it: a cycle in which one changes is not quiet.
+    """
     for number in range(axis.shape[0]):
         servo[number]["target"] = axis[number]["target"]
-        servo[number]["probe_function"] = axis[number]["probe_function"]
 
 
 @law
 def exchange_in(axis: Rows, servo: Rows) -> None:
-    """Actual value telegrams: what the drives captured at SYNC reaches the kernel (positions: `sense`)."""
+    """Actual value telegrams: what the drives captured at SYNC reaches the kernel."""
     for number in range(axis.shape[0]):
         kernel = axis[number]
         drive = servo[number]
         kernel["statusword"] = (kernel["statusword"] & 0xC3FF) | drive["status_flags"]
+        kernel["received"] = drive["position"]
         kernel["probe_status"] = drive["probe_status"]
         kernel["digital_inputs"] = drive["digital_inputs"]
         kernel["torque_permille"] = drive["torque_permille"]
@@ -71,7 +74,6 @@ def stride(
     """
     for done in range(cycles):
         if phase == MACHINE:
-            exchange_out(axis, servo)
             begin_ns = (cycle - 1) * cycle_ns
             faults = advance_machine(
                 servo,
@@ -87,14 +89,13 @@ def stride(
                 dc_epoch_ns,
             )
             exchange_in(axis, servo)
+            exchange_out(axis, servo)
             phase = SENSE
             if faults:
                 return done, SENSE
         if phase == SENSE:
-            for number in range(axis.shape[0]):
-                take_feedback(axis, history, number, servo[number]["position"], cycle)
             phase = ACT
-            if ask_watches(axis, path, watch, history, cycle) or stop_to_act:
+            if sense(axis, path, watch, history, cycle) or stop_to_act:
                 return done, ACT
         act(axis, path, segment, cycle_ns)
         write_log(axis, log, cycle % LOG_CYCLES)

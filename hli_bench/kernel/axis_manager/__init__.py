@@ -1,0 +1,1 @@
+"""Axis management: which axes home in which order."""

@@ -1,0 +1,384 @@
+"""The NC channel: takes the decoder's items in order, lets motion run ahead, stops at what must wait for it."""
+
+from collections import deque
+from collections.abc import Generator
+from typing import Protocol
+
+from hli_bench.base.ids import AxisIndex
+from hli_bench.base.time import NS_PER_S
+from hli_bench.base.units import mm
+from hli_bench.kernel.axis_manager.homing_order import HomingOrder
+from hli_bench.kernel.blocks import (
+    Block,
+    DriveWrite,
+    Dwell,
+    Flush,
+    Home,
+    Line,
+    MachineState,
+    MeasureSettings,
+    MeasuringRun,
+    ProgramEnd,
+    Source,
+    Text,
+)
+from hli_bench.kernel.core import Core
+from hli_bench.kernel.drive_manager import functions
+from hli_bench.kernel.drive_manager.objects import ObjectChannel
+from hli_bench.kernel.monitoring import Monitoring
+from hli_bench.kernel.path_preparation.dynamics import Ramp
+from hli_bench.kernel.position_controller import measurement
+from hli_bench.kernel.position_controller.measurement import Probe
+from hli_bench.kernel.records import CncError, MessageText
+from hli_bench.kernel.sequence import Sequence
+from hli_bench.kernel.watches import cycle_reached, path_done, segment_reached
+from hli_bench.laws.rows import SEGMENTS
+from hli_bench.manual.axis.words import Edge, ProbingSignal
+from hli_bench.manual.errors import path_interpolator as errors
+from hli_bench.manual.errors import position_controller as position_errors
+from hli_bench.protocols.canopen.aborts import SdoAbort
+
+Item = Block | Flush | CncError
+Items = Generator[Item, MachineState | None, None]
+REFILL = SEGMENTS // 2
+"""Free segments at which the look-ahead goes on."""
+
+
+class Activity(Protocol):
+    """A block that takes its time while no path runs."""
+
+    def step(self) -> bool:
+        """Go on; tell whether it is done."""
+
+    def abort(self) -> None:
+        """End it where it is."""
+
+
+class Channel:
+    """Runs one program at a time. `step` is called in every cycle that needs a decision."""
+
+    def __init__(self, core: Core, objects: ObjectChannel, monitoring: Monitoring) -> None:
+        self._core = core
+        self._objects = objects
+        self._monitoring = monitoring
+        self._items: Items | None = None
+        self._answer: MachineState | None = None
+        self._barrier: Item | None = None
+        self._postponed: Line | None = None
+        self._activity: Activity | None = None
+        self._texts: deque[tuple[int, Text]] = deque()
+        self._wake: list[int] = []
+        self._error_no_signal = core.setup.channel.meas_error_no_signal
+        self._probes: dict[AxisIndex, Probe] = {}
+        self._measured: dict[AxisIndex, float] = {}
+        self._latched: dict[AxisIndex, bool] = {}
+        self.source = Source("", 0)
+        self.running = False
+        self.completed = False
+
+    def start(self, items: Items) -> None:
+        """Begin a program."""
+        core = self._core
+        core.failed = False
+        core.preparation.synchronise()
+        self._items = items
+        self._answer = None
+        self._barrier = self._postponed = self._activity = None
+        self._texts.clear()
+        self._probes = {axis.index: measurement.default_probe(core, axis.index) for axis in core.setup.axes}
+        self._error_no_signal = core.setup.channel.meas_error_no_signal
+        self.running = True
+        self.completed = False
+
+    def step(self) -> None:
+        """Go on as far as this cycle allows."""
+        for handle in self._wake:
+            self._core.watches.forget(handle)
+        self._wake.clear()
+        if not self.running:
+            return
+        if self._core.failed:
+            self._stop()
+            return
+        self._hand_out_texts()
+        while self.running and self._proceed():
+            if self._core.failed:
+                self._stop()
+                return
+
+    def abort(self) -> None:
+        """End the program at once (CNC reset)."""
+        if self._activity is not None:
+            self._activity.abort()
+        self._core.path.abandon()
+        self._core.preparation.synchronise()
+        self._end(completed=False)
+
+    def _proceed(self) -> bool:
+        """Do the next thing; False when it has to wait."""
+        if self._activity is not None:
+            if not self._activity.step():
+                return False
+            self._activity = None
+        if self._postponed is not None:
+            return self._put(self._postponed)
+        if self._barrier is not None:
+            if not self._core.path.idle:
+                self._wait_for_path()
+                return False
+            self._hand_out_texts()
+            barrier, self._barrier = self._barrier, None
+            self._behind_motion(barrier)
+            return True
+        return self._next_item()
+
+    def _next_item(self) -> bool:
+        assert self._items is not None
+        answer, self._answer = self._answer, None
+        item = self._items.send(answer) if answer is not None else next(self._items)
+        match item:
+            case Line():
+                return self._put(item)
+            case Text(synchronous=False):
+                self._core.emitted.append(MessageText(source=item.source, text=item.text))
+            case Text():
+                self._texts.append((int(self._core.rows.path[0]["tail"]), item))
+                self._hand_out_texts()
+            case MeasureSettings():
+                self._set_measuring(item)
+            case CncError():
+                self._core.emitted.append(item)
+                self._core.failed = self._core.failed or item.severity == "error"
+            case _:
+                self._barrier = item
+        return True
+
+    def _put(self, line: Line) -> bool:
+        if self._core.preparation.room == 0:
+            self._postponed = line
+            refill = int(self._core.rows.path[0]["tail"]) - REFILL
+            self._wake.append(self._core.watches.watch(segment_reached(refill)))
+            return False
+        self._postponed = None
+        self.source = line.source
+        if not self._may_move(line):
+            return True
+        self._core.preparation.line(line)
+        return True
+
+    def _behind_motion(self, item: Item) -> None:
+        """Execute what must not begin before all motion is done."""
+        core = self._core
+        assert not isinstance(item, Line | Text | MeasureSettings | CncError)
+        self.source = item.source
+        match item:
+            case Flush():
+                self._answer = self._state()
+            case MeasuringRun():
+                self._activity = _Measuring.begin(self, item)
+            case Home():
+                if not item.ranks:
+                    core.report(errors.HOMING_WITHOUT_AXES, item.source)
+                else:
+                    self._activity = _Homing(core, self._monitoring, item)
+            case DriveWrite():
+                self._activity = _DriveObject.begin(core, self._objects, item)
+            case Dwell():
+                self._activity = _Dwell(core, item)
+            case ProgramEnd():
+                self._end(completed=True)
+
+    def _may_move(self, line: Line) -> bool:
+        """Check what forbids the motion: no reference, software limit switches (monitored after homing only)."""
+        core = self._core
+        for index, position in line.target.items():
+            axis = core.axis(index)
+            kenngr = axis.params.kenngr
+            if not core.referenced[index]:
+                if kenngr.prog_move_requires_homing:
+                    core.report(errors.MOTION_NEEDS_HOMING, line.source, axis.number, axis=index)
+                    return False
+                continue
+            if kenngr.swe_neg >= kenngr.swe_pos or axis.kind != "T":
+                continue
+            if position > mm(kenngr.swe_pos):
+                core.report(errors.POSITIVE_SOFTWARE_LIMIT, line.source, axis.number, axis=index)
+                return False
+            if position < mm(kenngr.swe_neg):
+                core.report(errors.NEGATIVE_SOFTWARE_LIMIT, line.source, axis.number, axis=index)
+                return False
+        return True
+
+    def _set_measuring(self, settings: MeasureSettings) -> None:
+        core = self._core
+        if settings.error_no_signal is not None:
+            self._error_no_signal = settings.error_no_signal
+        axes = [axis.index for axis in core.setup.axes] if settings.axis is None else [settings.axis]
+        for axis in axes:
+            if settings.axis is not None and not core.axis(axis).params.kenngr.messachse:
+                number = core.axis(axis).number
+                core.report(errors.MEAS_NOT_A_MEASUREMENT_AXIS, settings.source, number, axis=axis)
+                return
+            probe = self._probes[axis]
+            if settings.reset:
+                self._probes[axis] = measurement.default_probe(core, axis)
+                continue
+            self._probes[axis] = Probe(
+                ProbingSignal(settings.signal) if settings.signal else probe.signal,
+                settings.input if settings.input is not None else probe.input,
+                Edge(settings.edge) if settings.edge else probe.edge,
+            )
+
+    def _hand_out_texts(self) -> None:
+        """Emit the SYN texts whose place in the motion has been reached; watch for the next."""
+        core = self._core
+        while self._texts:
+            segment, text = self._texts[0]
+            if not core.path.idle and core.path.segment < segment:
+                self._wake.append(core.watches.watch(segment_reached(segment)))
+                return
+            self._texts.popleft()
+            core.emitted.append(MessageText(source=text.source, text=text.text))
+
+    def _wait_for_path(self) -> None:
+        self._wake.append(self._core.watches.watch(path_done()))
+
+    def _state(self) -> MachineState:
+        core = self._core
+        return MachineState(
+            command={axis.index: mm(float(core.row(axis.index)["command"])) for axis in core.setup.axes},
+            actual={axis.index: mm(round(float(core.row(axis.index)["actual"]))) for axis in core.setup.axes},
+            measured=dict(self._measured),
+            latched=dict(self._latched),
+            referenced={axis.index: core.referenced[axis.index] for axis in core.setup.axes},
+        )
+
+    def _stop(self) -> None:
+        """An error ends the program: what runs is braked, then it is over."""
+        core = self._core
+        if self._activity is not None:
+            self._activity.abort()
+            self._activity = None
+        self._barrier = self._postponed = None
+        if core.path.idle:
+            core.preparation.synchronise()
+            self._end(completed=False)
+            return
+        hold = core.rows.segment[core.path.segment % SEGMENTS]["hold"]
+        core.path.brake(Ramp(float(hold[0]), float(hold[1]), 0.0))
+        self._wait_for_path()
+
+    def _end(self, *, completed: bool) -> None:
+        if self._items is not None:
+            self._items.close()
+        self._items = None
+        self._activity = None
+        self.running = False
+        self.completed = completed
+
+    def take(self, run: measurement.Run) -> None:
+        """Keep what a measuring run delivered; axes without a new value keep their old one (M-067)."""
+        for axis in run.block.axes:
+            self._latched[axis] = run.before_target.get(axis, False)
+        self._measured |= {axis: mm(value.acs_tenth_um) for axis, value in run.values.items()}
+
+
+class _Measuring:
+    """A G100 block on its way."""
+
+    def __init__(self, channel: Channel, run: measurement.Run) -> None:
+        self._channel = channel
+        self._run = run
+        core = channel._core
+        if run.fixed_stop:
+            self._lag_monitoring(on=False)
+        self._sequence = Sequence(measurement.table(run), run, measurement.arming(run), core.watches)
+
+    @classmethod
+    def begin(cls, channel: Channel, block: MeasuringRun) -> "_Measuring | None":
+        run = measurement.begin(
+            channel._core, block, channel._probes, error_no_signal=channel._error_no_signal
+        )
+        return None if run is None else cls(channel, run)
+
+    def step(self) -> bool:
+        self._sequence.step()
+        if not self._sequence.ended:
+            return False
+        self._done()
+        return True
+
+    def abort(self) -> None:
+        self._sequence.abort()
+        measurement.abort(self._run)
+        self._done()
+
+    def _done(self) -> None:
+        if self._run.fixed_stop:
+            self._lag_monitoring(on=True)
+        self._channel.take(self._run)
+
+    def _lag_monitoring(self, *, on: bool) -> None:
+        for axis in self._run.block.axes:
+            self._channel._monitoring.lag(axis, on=on)
+
+
+class _Homing:
+    """A G74 block on its way; the lag is not monitored while the axis system shifts."""
+
+    def __init__(self, core: Core, monitoring: Monitoring, block: Home) -> None:
+        self._order = HomingOrder(core, block)
+
+    def step(self) -> bool:
+        return self._order.step()
+
+    def abort(self) -> None:
+        self._order.abort()
+
+
+class _DriveObject:
+    """A #DRIVE WR SYN block waiting for the drive's answer."""
+
+    def __init__(self, core: Core, block: DriveWrite) -> None:
+        self._core = core
+        self._block = block
+        self._done = False
+
+    @classmethod
+    def begin(cls, core: Core, objects: ObjectChannel, block: DriveWrite) -> "_DriveObject | None":
+        activity = cls(core, block)
+        accepted = functions.write(core, objects, block, activity._answered)
+        return activity if accepted and block.wait else None
+
+    def step(self) -> bool:
+        return self._done
+
+    def abort(self) -> None:
+        """The order itself goes on in the drive's channel."""
+
+    def _answered(self, refused: SdoAbort | None) -> None:
+        self._done = True
+        if refused is not None:
+            axis = self._core.axis(self._block.axis)
+            self._core.report(
+                position_errors.DRIVE_COMMAND_NOT_SUPPORTED, self._block.source, axis.number, axis=axis.index
+            )
+
+
+class _Dwell:
+    """A G04 block."""
+
+    def __init__(self, core: Core, block: Dwell) -> None:
+        self._core = core
+        cycles = round(block.seconds * NS_PER_S / core.setup.cycle_ns)
+        self._until = core.cycle + cycles
+        self._handle = core.watches.watch(cycle_reached(self._until))
+
+    def step(self) -> bool:
+        if self._core.cycle < self._until:
+            return False
+        self._core.watches.forget(self._handle)
+        return True
+
+    def abort(self) -> None:
+        self._core.watches.forget(self._handle)

@@ -1,0 +1,96 @@
+"""What the stages of the kernel share: setup, rows, conditions, path, the HLI's units, and the way out."""
+
+from dataclasses import dataclass, field
+
+from hli_bench.base.ids import AxisIndex
+from hli_bench.base.time import Ns
+from hli_bench.kernel.blocks import Source
+from hli_bench.kernel.path_interpolator import Path
+from hli_bench.kernel.path_preparation.preparation import Preparation
+from hli_bench.kernel.records import CncError, Emitted
+from hli_bench.kernel.setup import AxisSetup, KernelSetup
+from hli_bench.kernel.watches import ROOM, Watches
+from hli_bench.laws.rows import Rows, KernelRows
+from hli_bench.manual.errors import ErrorSheet, Severity
+from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
+from hli_bench.protocols.hli.image import Image
+from hli_bench.wire.can import CanFrame
+
+
+@dataclass(slots=True)
+class Core:
+    """State that every stage may see; `cycle` is the kernel cycle being worked on."""
+
+    setup: KernelSetup
+    image: Image
+    units: ControlUnits
+    rows: KernelRows
+    watches: Watches
+    path: Path
+    preparation: Preparation
+    cycle: int = 0
+    emitted: list[Emitted] = field(default_factory=list)
+    frames: list[CanFrame] = field(default_factory=list)
+    referenced: list[bool] = field(default_factory=list)
+    failed: bool = False
+    """An error (not a warning) has been emitted since the last program start or reset."""
+
+    @classmethod
+    def build(cls, setup: KernelSetup, image: Image, units: ControlUnits) -> "Core":
+        """Return the core of a kernel that has not run a cycle yet."""
+        rows = KernelRows.allocate(len(setup.axes), ROOM)
+        for axis in setup.axes:
+            rows.axis[axis.index]["increments_per_unit"] = axis.increments_per_unit
+        return cls(
+            setup=setup,
+            image=image,
+            units=units,
+            rows=rows,
+            watches=Watches(rows.watch),
+            path=Path(rows),
+            preparation=Preparation(setup, rows),
+            referenced=[axis.params.kenngr.abs_pos_gueltig for axis in setup.axes],
+        )
+
+    @property
+    def now(self) -> Ns:
+        """Instant of this cycle, ns since bench start."""
+        return Ns(self.cycle * self.setup.cycle_ns)
+
+    @property
+    def dc_now(self) -> Ns:
+        """DC time of this cycle."""
+        return Ns(self.setup.dc_epoch_ns + self.now)
+
+    def axis(self, index: AxisIndex) -> AxisSetup:
+        """Return the setup of an axis."""
+        return self.setup.axes[index]
+
+    def row(self, index: AxisIndex) -> Rows:
+        """Return the row of an axis (a view)."""
+        return self.rows.axis[index]  # type: ignore[no-any-return]
+
+    def unit(self, index: AxisIndex, name: str) -> ControlUnit:
+        """Return a control unit of an axis, e.g. `lr_mc_control/probing_signal`."""
+        return self.units[f"ax/{self.axis(index).number}/{name}"]
+
+    def show(self, index: AxisIndex, name: str, value: int) -> None:
+        """Write a status element of an axis, e.g. `lr_state/measurement_active_r`."""
+        path = f"ax/{self.axis(index).number}/{name}"
+        self.image.set(self.image.layout.element(path).id, value)
+
+    def report(
+        self, sheet: ErrorSheet, source: Source, *values: float | str, axis: AxisIndex | None = None
+    ) -> None:
+        """Emit an error or warning of the emulated CNC; `values` in the order of the sheet."""
+        self.emitted.append(
+            CncError(
+                number=sheet.number,
+                severity=sheet.severity,
+                text=sheet.message(values),
+                source=source,
+                axis=self.axis(axis).name if axis is not None else "",
+                values=dict(zip(sheet.values, values, strict=False)),
+            )
+        )
+        self.failed = self.failed or sheet.severity is Severity.ERROR

@@ -1,0 +1,208 @@
+"""The kernel as one node: the order of its cycle, and the only place that brings the stages together."""
+
+from collections.abc import Iterable
+
+from hli_bench.base.ids import AxisIndex
+from hli_bench.base.units import mm
+from hli_bench.kernel.blocks import Source
+from hli_bench.kernel.channel import Channel
+from hli_bench.kernel.core import Core
+from hli_bench.kernel.decoder import Decoder, DecoderAxis, DecoderDefaults
+from hli_bench.kernel.drive_manager import start_up
+from hli_bench.kernel.drive_manager.objects import ObjectChannel
+from hli_bench.kernel.drive_manager.telegram import ActualTelegrams, command_frames
+from hli_bench.kernel.monitoring import Monitoring
+from hli_bench.kernel.records import Emitted
+from hli_bench.kernel.sequence import Sequence
+from hli_bench.kernel.setup import KernelSetup
+from hli_bench.laws.rows import FOLLOW, KernelRows
+from hli_bench.protocols.canopen.sync import sync_frame
+from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
+from hli_bench.protocols.hli.image import Image
+from hli_bench.protocols.hli.layout import Layout
+from hli_bench.wire.can import CanFrame
+
+_TYPE_NUMBER = {"T": 1, "R": 2, "S": 4}
+_LAYOUT_KIND = {"T": "linear", "R": "rotary", "S": "spindle"}
+FULL_OVERRIDE = 1000
+
+
+class Kernel:
+    """The emulated CNC. Between `sense` and `act` of a cycle the bench calls `decide`, when there is a reason to."""
+
+    def __init__(self, setup: KernelSetup) -> None:
+        self.setup = setup
+        axes = [(axis.number, axis.name, _LAYOUT_KIND[axis.kind]) for axis in setup.axes]
+        self.image = Image(Layout(axes))
+        defaults = {"release_feedhold": True, "override": FULL_OVERRIDE}
+        units = ControlUnits(self.image, defaults)
+        self.core = Core.build(setup, self.image, units)
+        self._objects = ObjectChannel(axis.node for axis in setup.axes)
+        self._telegrams = ActualTelegrams([axis.node for axis in setup.axes], self.core.rows.axis)
+        self._monitoring = Monitoring(self.core)
+        self.channel = Channel(self.core, self._objects, self._monitoring)
+        self._starting: dict[AxisIndex, Sequence[start_up.Drive]] = {}
+        self._show_heads()
+
+    @property
+    def rows(self) -> KernelRows:
+        """The kernel's rows, for the compiled laws."""
+        return self.core.rows
+
+    @property
+    def ready(self) -> bool:
+        """All drives are in operation."""
+        return bool(self._starting) and all(sequence.ended for sequence in self._starting.values())
+
+    @property
+    def telegram_ids(self) -> frozenset[int]:
+        """COB-IDs of the telegrams that every cycle brings."""
+        return self._telegrams.cob_ids
+
+    def begin_start_up(self) -> None:
+        """Begin to bring all drives into operation."""
+        for axis in self.setup.axes:
+            drive = start_up.Drive(self.core, self._objects, axis.index)
+            self._starting[axis.index] = Sequence(start_up.TABLE, drive, "configure", self.core.watches)
+
+    def start(self, lines: Iterable[str], name: str) -> None:
+        """Begin an NC program. Usage errors of its text come out of `decide`."""
+        axes = [
+            DecoderAxis(axis.index, axis.name, axis.number, axis.kind, axis.params.kenngr.messachse)
+            for axis in self.setup.axes
+        ]
+        decoder = Decoder(lines, name, axes, DecoderDefaults(self.setup.channel.messtyp))
+        self.channel.start(decoder.blocks())
+
+    def take_frames(self, frames: Iterable[CanFrame]) -> bool:
+        """Take what the bus brought at this SYNC; tell whether any of it needs a decision."""
+        decide = False
+        for frame in frames:
+            if self._telegrams.take(frame):
+                continue
+            decide = True
+            self.core.frames += self._objects.on_frame(frame, self.core.now)
+            self._monitoring.emergency(frame)
+        return decide
+
+    def decide(self) -> None:
+        """Decide what comes next: called between `sense` and `act`, `core.cycle` being the cycle."""
+        core = self.core
+        for unit in core.units.sample():
+            self._unit_changed(unit)
+        self._start_drives()
+        for axis in self._monitoring.check(self.channel.source):
+            self._drive_lost(axis)
+        self.channel.step()
+        core.frames += self._objects.begin(core.now)
+
+    def begin_cycle(self, cycle: int) -> None:
+        """Tell the kernel which cycle it is in."""
+        self.core.cycle = cycle
+
+    def take_orders(self) -> list[CanFrame]:
+        """Return NMT and SDO frames to be sent in this cycle."""
+        frames, self.core.frames = self.core.frames, []
+        return frames
+
+    def cyclic_frames(self) -> list[CanFrame]:
+        """Return the command telegrams of this cycle, in identifier order."""
+        frames = [
+            frame
+            for axis in self.setup.axes
+            for frame in command_frames(axis.node, self.core.rows.axis[axis.index])
+        ]
+        return sorted(frames, key=lambda frame: frame.cob_id)
+
+    def sync(self) -> CanFrame:
+        """Return the SYNC frame."""
+        return sync_frame()
+
+    def take_emitted(self) -> list[Emitted]:
+        """Return what was emitted since the last call."""
+        emitted, self.core.emitted = self.core.emitted, []
+        return emitted
+
+    def reset(self) -> None:
+        """CNC reset: end the program, clear errors, bring stopped drives back into operation."""
+        self.channel.abort()
+        self._objects.clear()
+        self.core.failed = False
+        for axis in self.setup.axes:
+            self.core.show(axis.index, "head/error_r", False)
+            if self.core.row(axis.index)["mode"] == FOLLOW:
+                drive = start_up.Drive(self.core, self._objects, axis.index)
+                self._starting[axis.index] = Sequence(start_up.TABLE, drive, "reset", self.core.watches)
+
+    def publish(self) -> None:
+        """Bring the positions on the HLI up to date; called before somebody looks."""
+        core = self.core
+        for axis in self.setup.axes:
+            row = core.row(axis.index)
+            core.show(axis.index, "lr_state/active_position_r", _sgn32(float(row["actual"])))
+            core.show(axis.index, "lr_state/command_position_r", _sgn32(float(row["command"])))
+            core.show(axis.index, "lr_state/position_lag_r", _sgn32(float(row["lag"])))
+
+    def position_mm(self, axis: AxisIndex) -> float:
+        """Return the actual position of an axis in mm (degrees)."""
+        return mm(float(self.core.row(axis)["actual"]))
+
+    @property
+    def source(self) -> Source:
+        """The block in execution."""
+        return self.channel.source
+
+    def _start_drives(self) -> None:
+        for axis, sequence in self._starting.items():
+            if sequence.ended:
+                continue
+            sequence.step()
+            if sequence.ended:
+                self._monitoring.switch_on(axis)
+
+    def _drive_lost(self, axis: AxisIndex) -> None:
+        """A drive has dropped out: its set point follows, nothing of the path goes on."""
+        core = self.core
+        core.row(axis)["mode"] = FOLLOW
+        core.row(axis)["controlword"] = 0
+        core.show(axis, "head/error_r", True)
+        core.path.abandon()
+
+    def _unit_changed(self, unit: ControlUnit) -> None:
+        """A PLC changed a unit that acts by itself; probing and homing ask theirs when they need them."""
+        area, number, name = unit.path.split("/", 2)
+        unit.acknowledge(unit.effective)
+        if area == "ch":
+            self._channel_unit_changed(name, unit)
+            return
+        index = next(axis.index for axis in self.setup.axes if axis.number == int(number))
+        if name in ("lr_mc_control/release_feedhold", "ipo_mc_control/feedhold"):
+            released = self.core.unit(index, "lr_mc_control/release_feedhold").effective
+            held = self.core.unit(index, "ipo_mc_control/feedhold").effective
+            self.core.row(index)["released"] = bool(released) and not held
+        elif name == "lr_mc_control/probing_signal":
+            self.core.show(index, "lr_state/probe_actuated_r", unit.redirected and bool(unit.effective))
+
+    def _channel_unit_changed(self, name: str, unit: ControlUnit) -> None:
+        if name == "bahn_mc_control/feedhold":
+            self.core.path.hold(on=bool(unit.effective))
+        elif name in ("bahn_mc_control/override", "bahn_mc_control/override_valid"):
+            valid = self.core.units["ch/1/bahn_mc_control/override_valid"]
+            value = (
+                self.core.units["ch/1/bahn_mc_control/override"].effective
+                if valid.effective
+                else FULL_OVERRIDE
+            )
+            self.core.path.override(int(value) / FULL_OVERRIDE)
+
+    def _show_heads(self) -> None:
+        for axis in self.setup.axes:
+            core = self.core
+            core.show(axis.index, "head/log_ax_n_r", axis.number)
+            core.show(axis.index, "head/axis_type_r", _TYPE_NUMBER[axis.kind])
+            core.show(axis.index, "lr_state/drive_type_r", int(axis.params.kenngr.antr_typ))
+            core.show(axis.index, "lr_state/homing_done_r", core.referenced[axis.index])
+
+
+def _sgn32(tenth_um: float) -> int:
+    return max(-(1 << 31), min((1 << 31) - 1, round(tenth_um)))

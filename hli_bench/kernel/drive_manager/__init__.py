@@ -1,0 +1,1 @@
+"""Drive management: start-up of the nodes, drive states, acyclic drive objects."""

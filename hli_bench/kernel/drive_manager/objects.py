@@ -1,0 +1,81 @@
+"""Acyclic drive objects: SDO orders to the nodes, one at a time for each node, in the order they were given."""
+
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from hli_bench.base.ids import NodeId
+from hli_bench.base.time import Ns
+from hli_bench.protocols.canopen.aborts import SdoAbort
+from hli_bench.protocols.canopen.sdo import SdoClient
+from hli_bench.wire.can import CanFrame
+
+Done = Callable[[SdoAbort | None], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """One download; `done` gets None, or why the drive refused it."""
+
+    index: int
+    subindex: int
+    data: bytes
+    done: Done
+
+
+class ObjectChannel:
+    """The service channel to all nodes."""
+
+    __slots__ = ("_clients", "_orders", "_running")
+
+    def __init__(self, nodes: Iterable[NodeId]) -> None:
+        self._clients = {node: SdoClient(node) for node in nodes}
+        self._orders: dict[NodeId, deque[Order]] = {node: deque() for node in self._clients}
+        self._running: dict[NodeId, Order] = {}
+
+    def write(self, node: NodeId, order: Order) -> None:
+        """Queue a download."""
+        self._orders[node].append(order)
+
+    def begin(self, now: Ns) -> list[CanFrame]:
+        """Start what waits where the channel of its node is free; abort what is overdue."""
+        frames: list[CanFrame] = []
+        for node, client in self._clients.items():
+            frames += client.tick(now)
+            self._finish(node)
+            if not client.busy and self._orders[node]:
+                order = self._orders[node].popleft()
+                self._running[node] = order
+                frames += client.begin_write(order.index, order.subindex, order.data, now)
+        return frames
+
+    def on_frame(self, frame: CanFrame, now: Ns) -> list[CanFrame]:
+        """Take a frame that may be an answer."""
+        client = self._clients.get(NodeId(frame.cob_id - 0x580))
+        if client is None:
+            return []
+        frames = client.on_frame(frame, now)
+        self._finish(NodeId(client.node_id))
+        return frames
+
+    @property
+    def busy(self) -> bool:
+        """Orders are waiting or on their way."""
+        return bool(self._running) or any(self._orders.values())
+
+    def clear(self) -> None:
+        """Forget what waits (a CNC reset); what is on its way ends by itself."""
+        for orders in self._orders.values():
+            orders.clear()
+
+    def _finish(self, node: NodeId) -> None:
+        client = self._clients[node]
+        if client.busy or node not in self._running:
+            return
+        order = self._running.pop(node)
+        try:
+            client.result()
+        except SdoAbort as abort:
+            order.done(abort)
+        else:
+            order.done(None)

@@ -1,0 +1,101 @@
+"""Start-up of a CANopen drive: configure by SDO, NMT start, then through the CiA 402 states to operation.
+
+The steps of one drive are a table; all drives go through it side by side.
+"""
+
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+from hli_bench.base.errors import BenchError
+from hli_bench.base.ids import AxisIndex
+from hli_bench.kernel.core import Core
+from hli_bench.kernel.drive_manager.objects import ObjectChannel, Order
+from hli_bench.kernel.sequence import END, Level, Phase, Table, Then, Until
+from hli_bench.kernel.watches import statusword
+from hli_bench.laws.rows import FOLLOW, PATH
+from hli_bench.protocols.canopen.aborts import SdoAbort
+from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame
+
+HEARTBEAT_MS: Final = 1000
+"""Producer heartbeat that the CNC asks of its drives (decided here)."""
+CYCLIC_SYNCHRONOUS_POSITION: Final = 8
+_SHUTDOWN, _SWITCH_ON, _ENABLE_OPERATION = 0x06, 0x07, 0x0F
+_FAULT_RESET: Final = 0x80
+_STATE: Final = 0x6F
+_SWITCH_ON_DISABLED: Final = 0x40
+_NOT_OPERATION: Final = 0x4F
+
+
+@dataclass(slots=True)
+class Drive:
+    """One drive on its way."""
+
+    core: Core
+    channel: ObjectChannel
+    axis: AxisIndex
+    open_orders: int = 0
+
+    def order(self, index: int, subindex: int, data: bytes) -> None:
+        """Queue a configuration write."""
+        self.open_orders += 1
+        node = self.core.axis(self.axis).node
+
+        def done(refused: SdoAbort | None) -> None:
+            self.open_orders -= 1
+            if refused is not None:
+                name = self.core.axis(self.axis).name
+                raise BenchError(f"drive of axis {name} refuses {index:04X}:{subindex:02X}: {refused}")
+
+        self.channel.write(node, Order(index, subindex, data, done))
+
+
+def _configure(drive: Drive) -> None:
+    row = drive.core.row(drive.axis)
+    row["mode"] = FOLLOW
+    cycle_us = drive.core.setup.cycle_ns // 1000
+    drive.order(0x1006, 0, struct.pack("<I", cycle_us))
+    drive.order(0x1017, 0, struct.pack("<H", HEARTBEAT_MS))
+    drive.order(0x6060, 0, struct.pack("<b", CYCLIC_SYNCHRONOUS_POSITION))
+
+
+def _configured(drive: Drive) -> Until:
+    return Level(lambda: drive.open_orders == 0)
+
+
+def _start_node(drive: Drive) -> None:
+    drive.core.frames.append(nmt_frame(NmtCommand.START, drive.core.axis(drive.axis).node))
+
+
+def _controlword(word: int) -> Callable[[Drive], None]:
+    def send(drive: Drive) -> None:
+        drive.core.row(drive.axis)["controlword"] = word
+
+    return send
+
+
+def _state(mask: int, value: int) -> Callable[[Drive], Until]:
+    def reached(drive: Drive) -> Until:
+        return statusword(drive.axis, mask, value)
+
+    return reached
+
+
+def _in_operation(drive: Drive) -> None:
+    drive.core.row(drive.axis)["mode"] = PATH
+    drive.core.show(drive.axis, "lr_state/ready_for_power_on_r", True)
+    drive.core.show(drive.axis, "lr_state/ready_for_control_loop_on_r", True)
+
+
+TABLE: Final[Table[Drive]] = {
+    "configure": Phase(_configure, (Then(_configured, "start"),)),
+    "start": Phase(_start_node, (Then(_state(_NOT_OPERATION, _SWITCH_ON_DISABLED), "shut down"),)),
+    "reset": Phase(
+        _controlword(_FAULT_RESET), (Then(_state(_NOT_OPERATION, _SWITCH_ON_DISABLED), "shut down"),)
+    ),
+    "shut down": Phase(_controlword(_SHUTDOWN), (Then(_state(_STATE, 0x21), "switch on"),)),
+    "switch on": Phase(_controlword(_SWITCH_ON), (Then(_state(_STATE, 0x23), "enable"),)),
+    "enable": Phase(_controlword(_ENABLE_OPERATION), (Then(_state(_STATE, 0x27), END, _in_operation),)),
+}
+"""From power-on (`configure`) or a fault (`reset`) to operation enabled."""

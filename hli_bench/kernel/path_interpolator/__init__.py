@@ -1,0 +1,52 @@
+"""The running path: hold, override, brake. Its numbers are walked by the compiled `act`."""
+
+from hli_bench.kernel.path_preparation.dynamics import Ramp
+from hli_bench.laws.rows import BRAKE, IDLE, KernelRows
+
+
+class Path:
+    """The path of the channel, as the other stages command it."""
+
+    __slots__ = ("_rows",)
+
+    def __init__(self, rows: KernelRows) -> None:
+        self._rows = rows
+
+    @property
+    def idle(self) -> bool:
+        """Nothing moves and nothing is prepared."""
+        return bool(self._rows.path[0]["state"] == IDLE)
+
+    @property
+    def segment(self) -> int:
+        """Number of the running (or last) segment."""
+        return int(self._rows.path[0]["head"])
+
+    @property
+    def done(self) -> float:
+        """Path done in the running segment, 0.1 um."""
+        return float(self._rows.path[0]["s"])
+
+    def brake(self, ramp: Ramp) -> None:
+        """Brake to standstill with `ramp` and drop the distance to go."""
+        path = self._rows.path[0]
+        if path["state"] == IDLE:
+            return
+        path["brake"] = (ramp.low, ramp.high)
+        path["brake_split"] = ramp.split
+        path["state"] = BRAKE
+
+    def hold(self, *, on: bool) -> None:
+        """Feedhold of the path compound."""
+        self._rows.path[0]["hold"] = on
+
+    def override(self, factor: float) -> None:
+        """Set the feed override, 1.0 = as programmed."""
+        self._rows.path[0]["override"] = factor
+
+    def abandon(self) -> None:
+        """Stop at once and forget what is prepared (the set points stay where they are)."""
+        path = self._rows.path[0]
+        path["state"] = IDLE
+        path["v"] = 0.0
+        path["head"] = max(int(path["tail"]) - 1, 0)

@@ -1,0 +1,103 @@
+"""Which accelerations act in which block: G00, G01, feedhold, and the table of a measuring run."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hli_bench.base.units import tenth_um_from_um_per_s, tenth_um_per_s2
+from hli_bench.kernel.setup import AxisSetup
+from hli_bench.manual.axis.fallbacks import (
+    TwoStepSlope,
+    feed_slope,
+    feedhold_deceleration,
+    homing_acceleration,
+    rapid_slope,
+)
+from hli_bench.manual.axis.getriebe import Getriebe
+from hli_bench.manual.channel import ChannelParams
+
+
+@dataclass(frozen=True, slots=True)
+class Ramp:
+    """A rate below and above `split`: 0.1 um/s2 and 0.1 um/s. Of one axis, or of a path."""
+
+    low: float
+    high: float
+    split: float
+
+
+@dataclass(frozen=True, slots=True)
+class Dynamics:
+    """Ramps that act in a block of one axis; `limit` is its greatest velocity, 0.1 um/s."""
+
+    up: Ramp
+    down: Ramp
+    hold: Ramp
+    limit: float
+
+
+def rapid(axis: AxisSetup, channel: ChannelParams) -> Dynamics:
+    """G00: P-AXIS-00005 / 00006, slowing down with 00280 / 00281 where they are set; P-AXIS-00209."""
+    gear = axis.params.getriebe[0]
+    return _dynamics(gear, channel, rapid_slope(gear), min(gear.vb_eilgang, gear.dynamik.vb_max))
+
+
+def feed(axis: AxisSetup, channel: ChannelParams) -> Dynamics:
+    """G01: P-AXIS-00011 / 00012, slowing down with 00282 / 00283 where they are set; P-AXIS-00212."""
+    gear = axis.params.getriebe[0]
+    return _dynamics(gear, channel, feed_slope(gear), gear.dynamik.vb_max)
+
+
+def measuring(axis: AxisSetup, channel: ChannelParams) -> tuple[Dynamics, Ramp]:
+    """Return (profile dynamics, deceleration after the event) of a measuring run.
+
+    Measurement manual 2.1, table for linear slopes. Its third row prints the non-linear P-AXIS-00004 as
+    deceleration; rapid traverse deceleration of the linear profile is taken (decided here, decision 0009).
+    """
+    limit = tenth_um_from_um_per_s(axis.params.getriebe[0].dynamik.vb_max)
+    g00, g01 = rapid(axis, channel), feed(axis, channel)
+    feedhold = _feedhold(axis.params.getriebe[0])
+    if channel.meas_use_std_dynamic:
+        return g01, feedhold
+    profile = Dynamics(g00.up, g00.down, g00.hold, limit)
+    if channel.meas_deceleration_mode == 0 and channel.use_drive_curr_limit:
+        return profile, feedhold
+    return profile, g00.down
+
+
+def homing_rate(axis: AxisSetup) -> float:
+    """Return the acceleration of homing motions (P-AXIS-00285, else the smaller of 00005 and 00006), 0.1 um/s2."""
+    return tenth_um_per_s2(homing_acceleration(axis.params.getriebe[0]))
+
+
+def along(dynamics: Sequence[Dynamics], direction: Sequence[float]) -> Dynamics:
+    """Return what the axes allow a path that moves them with `direction` (components of the unit path)."""
+    parts = [abs(part) for part in direction]
+    return Dynamics(
+        ramp_along([one.up for one in dynamics], parts),
+        ramp_along([one.down for one in dynamics], parts),
+        ramp_along([one.hold for one in dynamics], parts),
+        min(one.limit / part for one, part in zip(dynamics, parts, strict=True)),
+    )
+
+
+def ramp_along(ramps: Sequence[Ramp], direction: Sequence[float]) -> Ramp:
+    """Return the ramp that a path may use so that no axis exceeds its own."""
+    parts = [abs(part) for part in direction]
+    return Ramp(
+        min(one.low / part for one, part in zip(ramps, parts, strict=True)),
+        min(one.high / part for one, part in zip(ramps, parts, strict=True)),
+        min(one.split / part for one, part in zip(ramps, parts, strict=True)),
+    )
+
+
+def _dynamics(gear: Getriebe, channel: ChannelParams, slope: TwoStepSlope, limit_um_per_s: int) -> Dynamics:
+    split = tenth_um_from_um_per_s(slope.changeover)
+    up = Ramp(tenth_um_per_s2(slope.acceleration_1), tenth_um_per_s2(slope.acceleration_2), split)
+    down = Ramp(tenth_um_per_s2(slope.deceleration_1), tenth_um_per_s2(slope.deceleration_2), split)
+    hold = _feedhold(gear) if channel.use_drive_curr_limit else down
+    return Dynamics(up, down, hold, tenth_um_from_um_per_s(limit_um_per_s))
+
+
+def _feedhold(gear: Getriebe) -> Ramp:
+    rate = tenth_um_per_s2(feedhold_deceleration(gear))
+    return Ramp(rate, rate, 0.0)

@@ -1,0 +1,1 @@
+"""Position controller: history of positions, monitoring, measuring runs, homing."""

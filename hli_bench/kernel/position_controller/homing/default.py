@@ -1,0 +1,99 @@
+"""Default homing in three phases: to the cam, off the cam, onto it with referencing by zero pulse or cam edge.
+
+Source: homing manual 2.3.1; P-AXIS-00064, 00084, 00152, 00158, 00218, 00219.
+"""
+
+from functools import partial
+
+from hli_bench.kernel.position_controller.homing import (
+    Run,
+    cam,
+    cam_operated,
+    finish,
+    jog,
+    reference,
+)
+from hli_bench.kernel.sequence import END, Phase, Table, Then, Until
+from hli_bench.kernel.watches import jog_stopped, probe_status
+from hli_bench.manual.axis.fallbacks import effective_input
+from hli_bench.manual.errors import position_controller as errors
+
+ZERO_PULSE = 0x15
+"""Touch probe function: enable, encoder zero pulse, positive edge."""
+STORED = 0x02
+
+
+def first(run: Run) -> str:
+    """An axis that stands on the cam begins with phase 2 (homing manual 2.3.1.1)."""
+    return "off cam" if cam_operated(run) else "to cam"
+
+
+def table(run: Run) -> Table[Run]:
+    """Return the phases; `run` decides speeds, direction and what references."""
+    kenngr, gear = run.setup.params.kenngr, run.setup.params.getriebe[0]
+    run.method = "cam" if kenngr.homing_without_zero_pulse else "cam, zero pulse"
+    away = gear.vb_refmax if kenngr.fast_from_cam else gear.vb_reflow
+    on, off = partial(cam, operated=True), partial(cam, operated=False)
+    by_cam = kenngr.homing_without_zero_pulse
+    found = Then(on, "stop", _reference_here) if by_cam else Then(on, "zero pulse")
+    return {
+        "to cam": Phase(_move(gear.vb_refmax), (Then(on, "stop on cam"),)),
+        "stop on cam": Phase(_stop, (Then(_stands, "off cam"),)),
+        "off cam": Phase(_move(away, -1), (Then(off, "stop off cam"),)),
+        "stop off cam": Phase(_stop, (Then(_stands, "search"),)),
+        "search": Phase(_move(gear.vb_reflow), (found,)),
+        "zero pulse": Phase(
+            _arm_zero_pulse,
+            (Then(_latched, "stop", _reference_latched), Then(off, "lost", _no_zero_pulse)),
+        ),
+        "stop": Phase(_stop, (Then(_stands, END, finish),)),
+        "lost": Phase(_stop, (Then(_stands, END),)),
+    }
+
+
+def _move(velocity: int, sign: int = 1) -> "partial[None]":
+    return partial(_jog, velocity, sign)
+
+
+def _jog(velocity: int, sign: int, run: Run) -> None:
+    jog(run, sign * run.direction, velocity)
+
+
+def _stop(run: Run) -> None:
+    jog(run, 0, 0)
+
+
+def _stands(run: Run) -> Until:
+    return jog_stopped(run.axis)
+
+
+def _shift(run: Run) -> int:
+    return 8 * (effective_input(run.setup.params) - 1)
+
+
+def _arm_zero_pulse(run: Run) -> None:
+    run.core.row(run.axis)["probe_function"] = ZERO_PULSE << _shift(run)
+
+
+def _latched(run: Run) -> Until:
+    stored = STORED << _shift(run)
+    return probe_status(run.axis, stored, stored)
+
+
+def _reference_latched(run: Run) -> None:
+    """The zero pulse's count becomes the reference position, whatever the axis did since."""
+    row = run.core.row(run.axis)
+    raw = int(row["latch"][2 * (effective_input(run.setup.params) - 1)])
+    feedback = int(row["feedback"])
+    reference(run, feedback + ((raw - feedback + 0x80000000) % 0x100000000 - 0x80000000))
+    row["probe_function"] = 0
+
+
+def _reference_here(run: Run) -> None:
+    """Without a zero pulse the actual position of the cycle that sees the cam becomes the reference position."""
+    reference(run, int(run.core.row(run.axis)["feedback"]))
+
+
+def _no_zero_pulse(run: Run) -> None:
+    run.core.row(run.axis)["probe_function"] = 0
+    run.core.report(errors.ZERO_PULSE_PATH, run.source, run.setup.number, axis=run.axis)

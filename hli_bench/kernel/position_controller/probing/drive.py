@@ -1,0 +1,60 @@
+"""DRIVE: the drive latches the position itself (CANopen: touch probe objects in the cyclic telegrams).
+
+Source: measurement manual 6.4; bits as in CiA 402.
+"""
+
+from hli_bench.base.ids import AxisIndex
+from hli_bench.base.time import Ns
+from hli_bench.kernel.core import Core
+from hli_bench.kernel.sequence import Until
+from hli_bench.kernel.watches import Condition, probe_status
+from hli_bench.manual.axis.words import Edge, TriggerSource
+
+ENABLE = 0x01
+DRIVE_DEFINED = 0x08
+SAMPLE = {Edge.POS: 0x10, Edge.NEG: 0x20}
+STORED = {Edge.POS: 0x02, Edge.NEG: 0x04}
+SLOT = {Edge.POS: 0, Edge.NEG: 1}
+
+
+def _shift(probing_input: int) -> int:
+    return 8 * (probing_input - 1)
+
+
+def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:  # noqa: ARG001 same shape for every source
+    """Not to be seen: the level of the probe is not part of the telegram."""
+    return False
+
+
+def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Condition | None:
+    """Set the latch control word; ready when the drive shows it enabled."""
+    function = ENABLE | SAMPLE[edge]
+    if core.axis(axis).params.antr.canopen.probing_trigger_source is TriggerSource.DRIVE_DEFINED:
+        function |= DRIVE_DEFINED
+    core.row(axis)["probe_function"] = function << _shift(probing_input)
+    mask = (ENABLE | STORED[edge]) << _shift(probing_input)
+    return probe_status(axis, mask, ENABLE << _shift(probing_input))
+
+
+def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:  # noqa: ARG001 same shape for every source
+    """The drive shows a stored value."""
+    stored = STORED[edge] << _shift(probing_input)
+    return probe_status(axis, stored, stored)
+
+
+def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:
+    """The latched position; the telegram carries no time, so it is that of the cycle that brought the value."""
+    row = core.row(axis)
+    raw = int(row["latch"][2 * (probing_input - 1) + SLOT[edge]])
+    increments = int(row["feedback"]) + _wrapped(raw - int(row["feedback"]))
+    return float((increments - row["reference"]) / row["increments_per_unit"]), core.dc_now
+
+
+def disarm(core: Core, axis: AxisIndex) -> None:
+    """Clear the latch control word."""
+    core.row(axis)["probe_function"] = 0
+
+
+def _wrapped(difference: int) -> int:
+    """Return a difference of two 32-bit counts the short way round."""
+    return (difference + 0x80000000) % 0x100000000 - 0x80000000

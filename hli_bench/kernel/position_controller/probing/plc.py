@@ -1,0 +1,52 @@
+"""PLC: the PLC hands over the probe's level, the kernel finds the edge and takes the actual value of its cycle.
+
+Source: measurement manual 7.1 and 8.2.3.
+"""
+
+from hli_bench.base.ids import AxisIndex
+from hli_bench.base.time import Ns
+from hli_bench.kernel.core import Core
+from hli_bench.kernel.sequence import Level, Until
+from hli_bench.kernel.watches import Condition
+from hli_bench.manual.axis.words import Edge
+
+UNIT = "lr_mc_control/probing_signal"
+
+
+def _level(core: Core, axis: AxisIndex) -> bool | None:
+    """Return the level that the PLC hands over, None while the unit is not enabled."""
+    unit = core.unit(axis, UNIT)
+    return bool(unit.effective) if unit.redirected else None
+
+
+def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:
+    """The probe is operated when the level after the edge is already there."""
+    return _level(core, axis) == (edge is Edge.POS)
+
+
+def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Condition | None:  # noqa: ARG001 same shape for every source
+    """Nothing to prepare: the unit is read all the time."""
+    return None
+
+
+def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:  # noqa: ARG001 same shape for every source
+    """The edge of P-AXIS-00518 in the unit, from one kernel cycle to the next."""
+    before = _level(core, axis)
+
+    def edge_came() -> bool:
+        nonlocal before
+        level = _level(core, axis)
+        came = before is not None and level is not None and level != before and level == (edge is Edge.POS)
+        before = level
+        return came
+
+    return Level(edge_came)
+
+
+def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:  # noqa: ARG001 same shape for every source
+    """The actual value in the cycle that saw the edge."""
+    return float(core.row(axis)["actual"]), core.dc_now
+
+
+def disarm(core: Core, axis: AxisIndex) -> None:
+    """Nothing to switch off."""

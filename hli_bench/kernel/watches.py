@@ -1,0 +1,118 @@
+"""Conditions as data: rows that the compiled `sense` asks once a cycle, handed out and taken back here."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from hli_bench.laws import rows as law
+
+ROOM: Final = 64
+"""Conditions that can be watched at the same time."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Condition:
+    """One condition: it is met when it has held in `cycles` cycles in a row. See the W_ kinds of `laws.rows`."""
+
+    kind: int
+    axis: int = 0
+    limit: float = 0.0
+    window: float = -1.0
+    mask: int = 0
+    value: int = 0
+    cycles: int = 1
+
+
+def path_done() -> Condition:
+    """The path has come to its end or has been braked to standstill."""
+    return Condition(kind=law.W_PATH_DONE)
+
+
+def segment_reached(number: int) -> Condition:
+    """The interpolator has begun segment `number`."""
+    return Condition(kind=law.W_SEGMENT, limit=float(number))
+
+
+def jog_stopped(axis: int) -> Condition:
+    """An axis moving by itself stands (its set point does)."""
+    return Condition(kind=law.W_JOG_STOPPED, axis=axis)
+
+
+def lag_over(axis: int, limit_tenth_um: float, cycles: int = 1) -> Condition:
+    """The position lag is larger than the limit."""
+    return Condition(kind=law.W_LAG_OVER, axis=axis, limit=limit_tenth_um, cycles=cycles)
+
+
+def standstill_lag_over(axis: int, limit_tenth_um: float, cycles: int = 1) -> Condition:
+    """The position lag is larger than the limit while the set point stands."""
+    return Condition(kind=law.W_STANDSTILL_LAG_OVER, axis=axis, limit=limit_tenth_um, cycles=cycles)
+
+
+def lag_within(axis: int, limit_tenth_um: float, cycles: int = 1) -> Condition:
+    """The position lag is not larger than the limit."""
+    return Condition(kind=law.W_LAG_WITHIN, axis=axis, limit=limit_tenth_um, cycles=cycles)
+
+
+def fixed_stop(axis: int, lag: float, window: float, cycles: int, from_path: int) -> Condition:
+    """Lag over `lag` (0: not asked) and moved at most `window` in `cycles` (< 0: not asked), behind `from_path`."""
+    return Condition(
+        kind=law.W_FIXED_STOP, axis=axis, limit=lag, window=window, value=from_path, cycles=max(cycles, 1)
+    )
+
+
+def probe_status(axis: int, mask: int, value: int) -> Condition:
+    """Bits of the drive's touch probe status."""
+    return Condition(kind=law.W_PROBE_STATUS, axis=axis, mask=mask, value=value)
+
+
+def statusword(axis: int, mask: int, value: int) -> Condition:
+    """Bits of the drive's statusword."""
+    return Condition(kind=law.W_STATUSWORD, axis=axis, mask=mask, value=value)
+
+
+def digital_input(axis: int, mask: int, value: int) -> Condition:
+    """Bits of the drive's digital inputs."""
+    return Condition(kind=law.W_DIGITAL_INPUT, axis=axis, mask=mask, value=value)
+
+
+def cycle_reached(cycle: int) -> Condition:
+    """Time is up."""
+    return Condition(kind=law.W_CYCLE, limit=float(cycle))
+
+
+class Watches:
+    """Hands out watch rows; a handle is the number of its row."""
+
+    __slots__ = ("_row",)
+
+    def __init__(self, watch: law.Rows) -> None:
+        self._row = watch
+
+    def watch(self, condition: Condition) -> int:
+        """Put a condition under watch and return its handle."""
+        free = (self._row["kind"] == law.W_NONE).nonzero()[0]
+        handle = int(free[0])
+        row = self._row[handle]
+        row["axis"] = condition.axis
+        row["limit"] = condition.limit
+        row["window"] = condition.window
+        row["mask"] = condition.mask
+        row["value"] = condition.value
+        row["cycles"] = condition.cycles
+        row["count"] = 0
+        row["fired"] = 0
+        row["kind"] = condition.kind
+        return handle
+
+    def met(self, handle: int) -> bool:
+        """Tell whether the condition has been met since it was put under watch."""
+        return bool(self._row[handle]["fired"])
+
+    def forget(self, handle: int) -> None:
+        """Take a condition back."""
+        self._row[handle]["kind"] = law.W_NONE
+        self._row[handle]["fired"] = 0
+
+    def forget_all(self) -> None:
+        """Take every condition back."""
+        self._row["kind"] = law.W_NONE
+        self._row["fired"] = 0

@@ -1,5 +1,7 @@
 """Bytes of typed values."""
 
+from typing import Any
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -10,7 +12,7 @@ INTEGERS = [kind for kind in DataType if integer_range(kind)]
 
 
 @pytest.mark.parametrize("kind", INTEGERS)
-def test_integers_at_their_limits(kind):
+def test_integers_at_their_limits(kind: Any) -> None:
     low, high = integer_range(kind)
     for value in (low, high):
         assert unpack(kind, pack(kind, value)) == value
@@ -24,11 +26,11 @@ def test_integers_at_their_limits(kind):
 
 
 @given(st.text(alphabet=st.characters(max_codepoint=255)))
-def test_strings(text):
+def test_strings(text: str) -> None:
     assert unpack(DataType.VISIBLE_STRING, pack(DataType.VISIBLE_STRING, text)) == text
 
 
-def test_other_types():
+def test_other_types() -> None:
     assert pack(DataType.UNICODE_STRING, "mä") == b"m\0\xe4\0"
     assert unpack(DataType.UNICODE_STRING, b"m\0\xe4\0") == "mä"
     assert parse(DataType.OCTET_STRING, "01 ff") == b"\x01\xff"

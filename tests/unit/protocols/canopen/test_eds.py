@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import canopen
 import pytest
@@ -38,7 +39,7 @@ DefaultValue=3
 """
 
 
-def test_every_entry_is_read_as_python_canopen_reads_it(description):
+def test_every_entry_is_read_as_python_canopen_reads_it(description: Any) -> None:
     oracle = canopen.import_od(str(EDS), 5)
     seen = 0
     for index in oracle:
@@ -59,7 +60,7 @@ def test_every_entry_is_read_as_python_canopen_reads_it(description):
     assert seen == len(description.entries)
 
 
-def test_small_file():
+def test_small_file() -> None:
     parsed = parse_text(SMALL)
     assert list(parsed.entries) == [(0x1000, 0), (0x2001, 0)]
     entry = parsed[0x2001, 0]
@@ -95,20 +96,20 @@ def test_small_file():
         ("[2001sub0]", "[2002sub0]", 15, "SubNumber"),
     ],
 )
-def test_broken_files_name_file_line_and_value(old, new, line, part):
+def test_broken_files_name_file_line_and_value(old: str, new: str, line: int, part: str) -> None:
     with pytest.raises(InputError, match=re.escape(part)) as error:
         parse_text(SMALL.replace(old, new, 1), "drive.eds")
     if old != "[2001sub0]":
         assert (error.value.file, error.value.line) == ("drive.eds", line)
 
 
-def test_sub_section_without_object():
+def test_sub_section_without_object() -> None:
     with pytest.raises(InputError, match=r"\[3000sub1\] has no \[3000\]") as error:
         parse_text(SMALL + "[3000sub1]\nParameterName=lost\n")
     assert error.value.line == 23
 
 
-def test_empty_and_missing_file(tmp_path):
+def test_empty_and_missing_file(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no \\[section\\]"):
         parse_text("; nothing\n", "x.eds")
     with pytest.raises(InputError, match="cannot read") as error:
@@ -116,7 +117,7 @@ def test_empty_and_missing_file(tmp_path):
     assert error.value.file.endswith("none.eds")
 
 
-def test_dcf_values_and_node_id():
+def test_dcf_values_and_node_id() -> None:
     text = SMALL.replace("DefaultValue=3", "DefaultValue=3\nParameterValue=4")
     parsed = parse_text(text + "[DeviceComissioning]\nNodeID=0x11\n")
     assert parsed[0x2001, 0].default == 4
@@ -125,7 +126,7 @@ def test_dcf_values_and_node_id():
         parse_text(SMALL + "[DeviceComissioning]\nNodeID=128\n")
 
 
-def test_compact_arrays_with_names_and_values():
+def test_compact_arrays_with_names_and_values() -> None:
     text = """[2100]
 ParameterName=Limit
 ObjectType=8
@@ -149,11 +150,11 @@ NrOfEntries=1
 
 
 @pytest.mark.parametrize("text", ["$NODEID+0x180", "0x180+$NODEID", "0x180 + $nodeid"])
-def test_node_id_is_added(text):
+def test_node_id_is_added(text: str) -> None:
     parsed = parse_text(SMALL.replace("0x192", text))
     assert parsed[0x1000, 0].default_for(3) == 0x183
 
 
 @pytest.mark.parametrize(("text", "value"), [("010", 8), ("0", 0), ("0x10", 16), ("10", 10)])
-def test_numbers_as_in_c(text, value):
+def test_numbers_as_in_c(text: str, value: int) -> None:
     assert parse_text(SMALL.replace("0x192", text))[0x1000, 0].default == value

@@ -1,6 +1,7 @@
 """SDO client against python-canopen's server, against ours, and against broken answers."""
 
 import struct
+from typing import Any
 
 import canopen
 import pytest
@@ -15,7 +16,7 @@ from hli_bench.wire.can import CanFrame
 BLOB = 0x2000
 
 
-def run(client, frames, answer):
+def run(client: Any, frames: Any, answer: Any) -> None:
     while frames:
         frames = [
             reply for frame in frames for given in answer(frame) for reply in client.on_frame(given, Ns(0))
@@ -24,14 +25,14 @@ def run(client, frames, answer):
 
 
 @pytest.fixture
-def client():
+def client() -> Any:
     return SdoClient(5)
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(content=st.binary(max_size=60))
-def test_with_our_server(device, client, content):
-    def answer(frame):
+def test_with_our_server(device: Any, client: Any, content: bytes) -> None:
+    def answer(frame: Any) -> Any:
         return device.on_frame(frame, Ns(0))
 
     run(client, client.begin_write(BLOB, 0, content, Ns(0)), answer)
@@ -43,22 +44,22 @@ def test_with_our_server(device, client, content):
 class Oracle(canopen.Network):
     """python-canopen's slave whose answers are collected."""
 
-    def __init__(self, eds):
+    def __init__(self, eds: str) -> None:
         super().__init__()
         self.answers = []
         self.node = self.create_node(5, eds)
 
-    def send_message(self, can_id, data, remote=False):
+    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         self.answers.append(CanFrame(can_id, bytes(data), remote))
 
-    def answer(self, frame):
+    def answer(self, frame: Any) -> Any:
         self.answers.clear()
         self.notify(frame.cob_id, bytearray(frame.data), 0.0)
         return list(self.answers)
 
 
 @pytest.mark.parametrize("content", [b"a", b"abcd", b"abcde", b"1234567", b"12345678", bytes(100)])
-def test_with_python_canopens_server(client, description, request, content):
+def test_with_python_canopens_server(client: Any, description: Any, request: Any, content: bytes) -> None:
     oracle = Oracle(str(request.path.with_name("node.eds")))
     run(client, client.begin_write(BLOB, 0, content, Ns(0)), oracle.answer)
     assert client.result() == b""
@@ -70,11 +71,11 @@ def test_with_python_canopens_server(client, description, request, content):
     assert refused.value.code == AbortCode.NO_OBJECT
 
 
-def reply(client, *data):
+def reply(client: Any, *data: int) -> list[CanFrame]:
     return client.on_frame(CanFrame(0x585, bytes(data).ljust(8, b"\0")), Ns(0))
 
 
-def assert_aborted(client, frames, code):
+def assert_aborted(client: Any, frames: Any, code: int) -> None:
     assert frames == [CanFrame(0x605, struct.pack("<BHBI", 0x80, BLOB, 0, code))]
     with pytest.raises(SdoAbort) as refused:
         client.result()
@@ -91,7 +92,7 @@ def assert_aborted(client, frames, code):
         ([(0x60, 0, 0x20), (0x20,), (0x20,)], AbortCode.TOGGLE),
     ],
 )
-def test_wrong_answers_to_a_download(client, answers, code):
+def test_wrong_answers_to_a_download(client: Any, answers: Any, code: int) -> None:
     client.begin_write(BLOB, 0, bytes(20), Ns(0))
     for answer in answers[:-1]:
         assert reply(client, *answer)
@@ -108,21 +109,21 @@ def test_wrong_answers_to_a_download(client, answers, code):
         ([(0x41, 0, 0x20, 0, 9), (0x01,)], AbortCode.LENGTH),
     ],
 )
-def test_wrong_answers_to_an_upload(client, answers, code):
+def test_wrong_answers_to_an_upload(client: Any, answers: Any, code: int) -> None:
     client.begin_read(BLOB, 0, Ns(0))
     for answer in answers[:-1]:
         assert reply(client, *answer)
     assert_aborted(client, reply(client, *answers[-1]), code)
 
 
-def test_upload_of_unknown_size(client):
+def test_upload_of_unknown_size(client: Any) -> None:
     client.begin_read(BLOB, 0, Ns(0))
     reply(client, 0x40, 0, 0x20)
     assert reply(client, 0x0B, 1, 2) == []
     assert client.result() == b"\x01\x02"
 
 
-def test_time_out(client):
+def test_time_out(client: Any) -> None:
     client.begin_read(BLOB, 0, Ns(7))
     due = client.next_due()
     assert due == 1_000_000_007
@@ -132,7 +133,7 @@ def test_time_out(client):
     assert client.next_due() is None
 
 
-def test_use_in_the_wrong_order(client):
+def test_use_in_the_wrong_order(client: Any) -> None:
     with pytest.raises(RuntimeError, match="no finished"):
         client.result()
     client.begin_read(BLOB, 0, Ns(0))

@@ -2,6 +2,7 @@
 
 import struct
 from binascii import crc_hqx
+from typing import Any
 
 import canopen
 import pytest
@@ -18,23 +19,23 @@ NODE_ID = 5
 BLOB, TEXT, LIMITED, WRITE_ONLY, READ_ONLY = 0x2000, 0x2001, 0x2002, 0x2003, 0x2004
 
 
-def ask(device, first, *rest, now=0):
+def ask(device: Any, first: Any, *rest: int, now: int = 0) -> list[bytes]:
     data = bytes((first, *rest)) if rest else first
     return [frame.data for frame in device.on_frame(CanFrame(0x605, data.ljust(8, b"\0")), Ns(now))]
 
 
-def initiate(command, index, subindex=0, data=b""):
+def initiate(command: int, index: int, subindex: int = 0, data: bytes = b"") -> Any:
     return struct.pack("<BHB", command, index, subindex) + data.ljust(4, b"\0")
 
 
-def abort_code(replies):
+def abort_code(replies: Any) -> Any:
     assert len(replies) == 1
     assert replies[0][0] == 0x80
     return AbortCode(struct.unpack_from("<I", replies[0], 4)[0])
 
 
 @pytest.mark.parametrize("length", [0, 1, 2, 3, 4, 5, 7, 8, 14, 15, 889, 890, 2000])
-def test_download_and_upload_by_expedited_segmented_and_block_transfer(master, length):
+def test_download_and_upload_by_expedited_segmented_and_block_transfer(master: Any, length: int) -> None:
     content = bytes(number * 7 % 251 for number in range(length))
     master.sdo.download(BLOB, 0, content)
     assert master.sdo.upload(BLOB, 0) == content
@@ -54,12 +55,12 @@ def test_download_and_upload_by_expedited_segmented_and_block_transfer(master, l
 
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(content=st.binary(max_size=300), segmented=st.booleans())
-def test_any_content_survives(master, content, segmented):
+def test_any_content_survives(master: Any, content: bytes, segmented: bool) -> None:
     master.sdo.download(BLOB, 0, content, force_segment=segmented)
     assert master.sdo.upload(BLOB, 0) == content
 
 
-def test_typed_values(master):
+def test_typed_values(master: Any) -> None:
     master.sdo[LIMITED].raw = -10
     assert master.sdo[LIMITED].raw == -10
     master.sdo[TEXT].raw = "a longer text"
@@ -92,7 +93,9 @@ def test_typed_values(master):
     ],
 )
 @pytest.mark.parametrize("segmented", [False, True])
-def test_refused_downloads_change_nothing(master, device, index, subindex, data, code, segmented):
+def test_refused_downloads_change_nothing(
+    master: Any, device: Any, index: int, subindex: int, data: bytes, code: int, segmented: bool
+) -> None:
     before = device.values.get(index, subindex) if device.values.has(index, subindex) else None
     with pytest.raises(canopen.SdoAbortedError) as refused:
         master.sdo.download(index, subindex, data, force_segment=segmented)
@@ -110,7 +113,7 @@ def test_refused_downloads_change_nothing(master, device, index, subindex, data,
     ],
 )
 @pytest.mark.parametrize("block", [False, True])
-def test_refused_uploads(master, index, subindex, code, block):
+def test_refused_uploads(master: Any, index: int, subindex: int, code: int, block: bool) -> None:
     with (
         pytest.raises(canopen.SdoAbortedError) as refused,
         master.sdo.open(index, subindex, block_transfer=block) as stream,
@@ -119,22 +122,22 @@ def test_refused_uploads(master, index, subindex, code, block):
     assert refused.value.code == code
 
 
-def test_block_download_of_a_read_only_object_is_refused_at_once(device):
+def test_block_download_of_a_read_only_object_is_refused_at_once(device: Any) -> None:
     assert abort_code(ask(device, initiate(0xC6, READ_ONLY, 0, b"\2"))) is AbortCode.READ_ONLY
 
 
-def test_expedited_download_without_a_size_takes_what_the_object_needs(device):
+def test_expedited_download_without_a_size_takes_what_the_object_needs(device: Any) -> None:
     assert ask(device, initiate(0x22, WRITE_ONLY, 0, b"\x34\x12\xff\xff"))[0][0] == 0x60
     assert device.values.get(WRITE_ONLY) == 0x1234
 
 
 @pytest.mark.parametrize("command", [0x00, 0x60, 0xA1, 0xA2, 0xA3, 0xC1, 0xE0, 0xFF])
-def test_commands_that_fit_no_transfer_are_aborted(device, command):
+def test_commands_that_fit_no_transfer_are_aborted(device: Any, command: int) -> None:
     assert abort_code(ask(device, command, 0, 0)) is AbortCode.BAD_COMMAND
     assert ask(device, initiate(0x40, READ_ONLY))[0][:4] == initiate(0x4B, READ_ONLY)[:4]
 
 
-def test_toggle_bit_is_checked_both_ways(device):
+def test_toggle_bit_is_checked_both_ways(device: Any) -> None:
     ask(device, initiate(0x21, BLOB, 0, struct.pack("<I", 20)))
     assert ask(device, b"\x00" + b"a" * 7)[0][0] == 0x20
     assert abort_code(ask(device, b"\x00" + b"a" * 7)) is AbortCode.TOGGLE
@@ -145,7 +148,7 @@ def test_toggle_bit_is_checked_both_ways(device):
 
 
 @pytest.mark.parametrize("announced", [6, 8])
-def test_announced_size_must_come(device, announced):
+def test_announced_size_must_come(device: Any, announced: int) -> None:
     ask(device, initiate(0x21, BLOB, 0, struct.pack("<I", announced)))
     assert abort_code(ask(device, b"\x01" + b"a" * 7)) is AbortCode.LENGTH
     ask(device, initiate(0xC2, BLOB, 0, struct.pack("<I", announced)))
@@ -153,16 +156,19 @@ def test_announced_size_must_come(device, announced):
     assert abort_code(ask(device, b"\xc1")) is AbortCode.LENGTH
 
 
-def test_more_than_memory_is_refused(device):
+def test_more_than_memory_is_refused(device: Any) -> None:
     size = struct.pack("<I", MAX_TRANSFER_BYTES + 1)
     assert abort_code(ask(device, initiate(0x21, BLOB, 0, size))) is AbortCode.MEMORY
     assert abort_code(ask(device, initiate(0xC2, BLOB, 0, size))) is AbortCode.MEMORY
 
 
-def test_block_download_answers_a_gap_with_the_last_segment_in_sequence(device):
+def test_block_download_answers_a_gap_with_the_last_segment_in_sequence(device: Any) -> None:
     content = bytes(range(21))
     checksum = struct.pack("<H", crc_hqx(content, 0))
-    assert ask(device, initiate(0xC6, BLOB, 0, struct.pack("<I", 21)))[0][:5] == initiate(0xA4, BLOB)[:4] + b"\x7f"
+    assert (
+        ask(device, initiate(0xC6, BLOB, 0, struct.pack("<I", 21)))[0][:5]
+        == initiate(0xA4, BLOB)[:4] + b"\x7f"
+    )
     assert ask(device, b"\x01" + content[:7]) == []
     assert ask(device, b"\x83" + content[14:])[0][:3] == b"\xa2\x01\x7f"
     assert ask(device, b"\x01" + content[7:14]) == []
@@ -171,20 +177,20 @@ def test_block_download_answers_a_gap_with_the_last_segment_in_sequence(device):
     assert device.values.get(BLOB) == content
 
 
-def test_block_download_with_a_wrong_checksum_is_refused(device):
+def test_block_download_with_a_wrong_checksum_is_refused(device: Any) -> None:
     ask(device, initiate(0xC4, BLOB))
     ask(device, b"\x81" + b"a" * 7)
     assert abort_code(ask(device, b"\xc1\x12\x34")) is AbortCode.CRC
     assert device.values.get(BLOB) == b""
 
 
-def test_block_segment_number_zero_is_a_sequence_error(device):
+def test_block_segment_number_zero_is_a_sequence_error(device: Any) -> None:
     ask(device, initiate(0xC4, BLOB))
     assert abort_code(ask(device, b"\x00" + b"a" * 7)) is AbortCode.SEQUENCE
 
 
 @pytest.mark.parametrize("size", [0, 128])
-def test_block_size_is_checked(device, size):
+def test_block_size_is_checked(device: Any, size: int) -> None:
     assert abort_code(ask(device, initiate(0xA4, BLOB, 0, bytes((size,))))) is AbortCode.BLOCK_SIZE
     device.values.put(BLOB, 0, bytes(30))
     ask(device, initiate(0xA4, BLOB, 0, b"\x02"))
@@ -192,7 +198,7 @@ def test_block_size_is_checked(device, size):
     assert abort_code(ask(device, bytes((0xA2, 2, size)))) is AbortCode.BLOCK_SIZE
 
 
-def test_block_upload_repeats_what_was_not_acknowledged(device):
+def test_block_upload_repeats_what_was_not_acknowledged(device: Any) -> None:
     content = bytes(range(20))
     device.values.put(BLOB, 0, content)
     ask(device, initiate(0xA4, BLOB, 0, b"\x02"))
@@ -203,18 +209,20 @@ def test_block_upload_repeats_what_was_not_acknowledged(device):
     assert ask(device, b"\xa1") == []
 
 
-def test_acknowledging_more_than_was_sent_is_a_sequence_error(device):
+def test_acknowledging_more_than_was_sent_is_a_sequence_error(device: Any) -> None:
     device.values.put(BLOB, 0, bytes(20))
     ask(device, initiate(0xA4, BLOB, 0, b"\x02"))
     ask(device, b"\xa3")
     assert abort_code(ask(device, b"\xa2\x03\x02")) is AbortCode.SEQUENCE
 
 
-def test_small_values_may_switch_a_block_upload_to_a_normal_one(device):
-    assert ask(device, initiate(0xA4, READ_ONLY, 0, b"\x7f\x04"))[0] == initiate(0x4B, READ_ONLY, 0, b"\xf9\xff")
+def test_small_values_may_switch_a_block_upload_to_a_normal_one(device: Any) -> None:
+    assert ask(device, initiate(0xA4, READ_ONLY, 0, b"\x7f\x04"))[0] == initiate(
+        0x4B, READ_ONLY, 0, b"\xf9\xff"
+    )
 
 
-def test_a_silent_client_is_aborted_after_the_time_out(device):
+def test_a_silent_client_is_aborted_after_the_time_out(device: Any) -> None:
     ask(device, initiate(0x21, BLOB, 0, struct.pack("<I", 20)), now=1000)
     due = device.next_due(Ns(1000))
     assert due == 500_001_000
@@ -225,13 +233,13 @@ def test_a_silent_client_is_aborted_after_the_time_out(device):
     assert abort_code(ask(device, b"\x00" + b"a" * 7)) is AbortCode.BAD_COMMAND
 
 
-def test_a_client_abort_ends_the_transfer_silently(device):
+def test_a_client_abort_ends_the_transfer_silently(device: Any) -> None:
     ask(device, initiate(0x21, BLOB, 0, struct.pack("<I", 20)))
     assert ask(device, initiate(0x80, BLOB)) == []
     assert device.next_due(Ns(0)) is None
 
 
-def test_frames_that_are_no_requests_get_no_answer(device):
+def test_frames_that_are_no_requests_get_no_answer(device: Any) -> None:
     assert device.on_frame(CanFrame(0x605, b"\x40\x00\x10"), Ns(0)) == []
     assert device.on_frame(CanFrame(0x605, remote=True), Ns(0)) == []
     assert device.on_frame(CanFrame(0x606, initiate(0x40, 0x1000)), Ns(0)) == []
@@ -239,7 +247,7 @@ def test_frames_that_are_no_requests_get_no_answer(device):
 
 @settings(max_examples=60, deadline=None)
 @given(requests=st.lists(st.binary(min_size=8, max_size=8), max_size=30))
-def test_no_sequence_of_requests_breaks_the_server(description, requests):
+def test_no_sequence_of_requests_breaks_the_server(description: Any, requests: Any) -> None:
     device = Device(description, NODE_ID)
     device.power_on()
     for request in requests:

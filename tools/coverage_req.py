@@ -1,7 +1,7 @@
 """Prints which requirement lines are covered by tests, which are open and which do not apply.
 
-Reads the marks `@pytest.mark.req("M-075", ...)` over `tests/` from the syntax trees (nothing is imported) and the
-reasons in `docs/requirements_na.toml`. Ends with 1 if a mark or a reason names a line that does not exist.
+Reads the marks `@pytest.mark.req("M-075", ...)` over `tests/` from the syntax trees (nothing is imported) and
+the reasons in `docs/requirements_na.toml`. Ends with 1 if one of them names a line that does not exist.
 """
 
 import ast
@@ -42,7 +42,7 @@ def ids_in(node: ast.AST) -> Iterator[str]:
 
 
 def marks_of(path: Path, root: Path) -> Iterator[tuple[str, str]]:
-    """Yield (id, test) for one test file; marks on a class or module count for the class or module."""
+    """Yield (id, test) for one test file; a mark outside a test counts for its class or module."""
     place = path.relative_to(root).as_posix()
     for node in ast.parse(path.read_text(encoding="utf-8"), filename=str(path)).body:
         if isinstance(node, ast.ClassDef):
@@ -71,7 +71,7 @@ def marks(root: Path) -> dict[str, list[str]]:
 
 
 def reasons(root: Path) -> dict[str, str]:
-    """Return why lines do not apply: `[M-035] reason = "..."`, or any table with `ids = [...]` and `reason`."""
+    """Return why lines do not apply: `[M-035] reason = "..."`, or a table with `ids` and `reason`."""
     path = root / "docs" / "requirements_na.toml"
     tables = tomllib.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     found: dict[str, str] = {}
@@ -102,18 +102,8 @@ def main(root: Path = ROOT) -> int:
     for line in lines(covered, not_applicable):
         print(line)
     known = set(requirement_ids())
-    unknown = [
-        *(
-            f"{requirement} in {tests[0]}"
-            for requirement, tests in covered.items()
-            if requirement not in known
-        ),
-        *(
-            f"{requirement} in docs/requirements_na.toml"
-            for requirement in not_applicable
-            if requirement not in known
-        ),
-    ]
+    unknown = [f"{name} in {tests[0]}" for name, tests in covered.items() if name not in known]
+    unknown += [f"{name} in docs/requirements_na.toml" for name in not_applicable.keys() - known]
     for text in sorted(unknown):
         print(f"unknown requirement: {text}", file=sys.stderr)
     return 1 if unknown else 0

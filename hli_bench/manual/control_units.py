@@ -275,6 +275,15 @@ CHANNEL_ELEMENTS: Final = (
 )
 """Elements of a channel area, in the order of the image."""
 
+OLD_GROUPS: Final = MappingProxyType(
+    {
+        "McControlLr_Data": "lr_mc_control",
+        "McControlIpo_Data": "ipo_mc_control",
+        "StateLR_Data": "lr_state",
+    }
+)
+"""Old names of groups in an area."""
+
 SIZES: Final = MappingProxyType({BOOL: 1, UNS16: 2, UNS32: 4, SGN32: 4, SGN64: 8})
 """Bytes of each type in the image (little-endian)."""
 
@@ -295,7 +304,9 @@ def canonical(path: str) -> str | None:
         return None
     for element in AXIS_ELEMENTS if parts[0] == "ax" else CHANNEL_ELEMENTS if parts[0] == "ch" else ():
         own = element.path.replace("<n>", parts[1]).split("/")
-        if own[2] != parts[2] or (own[3] != parts[3] and parts[3] not in element.aliases):
+        if own[2] != OLD_GROUPS.get(parts[2], parts[2]) or (
+            own[3] != parts[3] and parts[3] not in element.aliases
+        ):
             continue
         if len(parts) == 4:
             return "/".join(own)

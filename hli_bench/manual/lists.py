@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple
 
 from hli_bench.base.errors import InputError
 from hli_bench.manual.axis import AxisParams
+from hli_bench.manual.axis.fallbacks import effective_signal, permitted_inputs
 from hli_bench.manual.catalogue import INDEX, PLACEHOLDER, Catalogue, catalogue, convert, named
 from hli_bench.manual.channel import ChannelParams
 from hli_bench.manual.drive_types import AxisMode
@@ -149,10 +150,24 @@ def check_values(cls: type[Any], values: Mapping[str, Value]) -> list[tuple[str,
         if entry.sheet.effect is Effect.ACCEPTED and value != entry.default:
             note = f"{path}: accepted, changes nothing in this bench yet{named(entry.sheet)}"
             found.append((path, Finding(Severity.NOTE, note)))
+    if cls is AxisParams:
+        found.extend(_axis_rules(values))
+    return found
+
+
+def _axis_rules(values: Mapping[str, Value]) -> Iterator[tuple[str, Finding]]:
+    """Yield findings about parameters that must fit together."""
     if values.get("kenngr.ref_ohne_nocken") is True and values.get("kenngr.ref_ohne_rev") is not True:
         message = "kenngr.ref_ohne_nocken: 1 needs kenngr.ref_ohne_rev 1 (P-AXIS-00156, P-AXIS-00157)"
-        found.append(("kenngr.ref_ohne_nocken", Finding(Severity.WARNING, message)))
-    return found
+        yield "kenngr.ref_ohne_nocken", Finding(Severity.WARNING, message)
+    number = values.get("kenngr.measure.input", 0)
+    kenngr = build(AxisParams, values).kenngr
+    inputs = permitted_inputs(effective_signal(kenngr), kenngr.antr_typ)
+    if number and inputs is not None and number not in inputs:
+        message = (
+            f"kenngr.measure.input: {number} is not one of {inputs.start}..{inputs.stop - 1} of this source"
+        )
+        yield "kenngr.measure.input", Finding(Severity.WARNING, f"{message} (P-AXIS-00517)")
 
 
 def _beyond(

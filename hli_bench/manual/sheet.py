@@ -114,7 +114,7 @@ class Sheet:
         if self.data_type is DataType.STRING:
             return f"at most {self.max_length} characters" if self.max_length else "text"
         if self.data_type is DataType.REAL64 and self.low is None and self.high is None:
-            return "a number other than 0" if self.nonzero else "a number"
+            return "(any number but 0)" if self.nonzero else "(any number)"
         low, high = LIMITS.get(self.data_type, ("", ""))
         text = f"{low if self.low is None else self.low}..{high if self.high is None else self.high}"
         return text if self.unset is None else f"{self.unset} (not set) or {text}"

@@ -23,6 +23,9 @@ LATCHING = frozenset(
 )
 """Drive types that latch the position themselves: measuring there is the default (measurement manual 2)."""
 
+TWO_INPUTS = frozenset({DriveType.SERCOS, DriveType.CANOPEN, DriveType.PROFIDRIVE})
+"""Drive types with two probing inputs (P-AXIS-00517)."""
+
 
 @dataclass(frozen=True, slots=True)
 class TwoStepSlope:
@@ -76,6 +79,15 @@ def effective_input(axis: AxisParams) -> int:
     if axis.kenngr.antr_typ is DriveType.CANOPEN and axis.antr.canopen.probing_input_number:
         return axis.antr.canopen.probing_input_number
     return 1
+
+
+def permitted_inputs(signal: ProbingSignal, drive_type: DriveType) -> range | None:
+    """Return the probing inputs that a source has; None where the source uses none. Source: P-AXIS-00517."""
+    if signal is ProbingSignal.PLC_EXT_LATCH_CONTROL:
+        return range(1, 256)
+    if signal is not ProbingSignal.DRIVE:
+        return None
+    return range(1, 3 if drive_type in TWO_INPUTS else 2)
 
 
 def fixed_stop_pos_lag_limit(axis: AxisParams) -> int:

@@ -669,10 +669,21 @@ class Getriebe:
             number="P-AXIS-00270",
             data_type=DataType.UNS16,
             choices=(0, 1),
-            not_emulated=(1,),
-            doc="Profile of homing: 0 linear slope, 1 jerk-limited.",
-            source="TF5200 dynamics, infosys page 248658571; type and range decided here",
-            effect=Effect.EMULATED,
+            doc="Profile of homing: 0 linear slope, 1 jerk-limited; homing always runs with the linear one.",
+            source="TF5200 dynamics, infosys page 248658571; homing manual 2; type and range decided here",
+            effect=Effect.ACCEPTED,
+        ),
+    )
+    vb_not_referenced: int = param(
+        0,
+        Sheet(
+            number="P-AXIS-00268",
+            data_type=DataType.UNS32,
+            high="P-AXIS-00212",
+            units=VELOCITY,
+            doc="Largest speed of spindles and single axes before homing.",
+            source=axis_page(117250187),
+            effect=Effect.ACCEPTED,
         ),
     )
     a_ref: int = param(

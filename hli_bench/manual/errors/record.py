@@ -35,7 +35,7 @@ class ErrorSheet:
     severity: Severity
     reaction_class: ReactionClass
     remedy_class: int
-    """2, 3 and 5 channel reset or change the program, 6 restart of the channel, 7 restart (diagnosis scale)."""
+    """2, 3, 5 correct the program or reset the channel, 6 restart of the channel, 7 restart."""
     values: tuple[str, ...] = ()
     """Meaning of each value."""
     source: str = ""

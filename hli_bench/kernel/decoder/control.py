@@ -88,12 +88,14 @@ class Control:
                 yield from self._read_over(opened, branches=False)
             scanner.pos = len(scanner.text) if word == "ELSEIF" else scanner.pos
             return
+        inside = 0
         while self._open and self._open[-1].word == "IF":
             self._open.pop()
+            inside += 1
         if not self._open:
             raise scanner.error(f"expected ${word} inside a loop", scanner.start)
         loop = self._open[-1]
-        _, end = self._skip(loop, branches=False)
+        _, end = self._skip(loop, branches=False, depth=inside)
         if word == "CONTINUE":
             yield from self._again_while(end) if loop.word == "WHILE" else self._again_for()
         else:
@@ -184,9 +186,11 @@ class Control:
         if not any(opened.word in ("WHILE", "FOR") for opened in self._open):
             self._lines.forget()
 
-    def _skip(self, opened: _Open, *, branches: bool) -> tuple[str, Scanner]:
-        """Read over blocks up to the end of the control block (or its next branch); return its word."""
-        depth = 0
+    def _skip(self, opened: _Open, *, branches: bool, depth: int = 0) -> tuple[str, Scanner]:
+        """Read over blocks up to the end of the control block (or its next branch); return its word.
+
+        `depth` counts the control blocks inside it that are left as well.
+        """
         while (raw := self._lines.next()) is not None:
             scanner = Scanner(read_block(self._lines, raw, self._context.name))
             word = _statement(scanner)

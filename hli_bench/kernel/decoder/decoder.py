@@ -60,6 +60,14 @@ class Decoder:
         except CncStop as stop:
             yield stop.error
 
+    def variables(self, state: MachineState) -> dict[str, float]:
+        """Return the NC variables the program set or read, given the machine's state at its end.
+
+        The values of every measured axis are among them whether the program read them or not.
+        """
+        self._context.measurements.learn(state)
+        return self._memory.result()
+
     def _items(self) -> Steps:
         context, next_line, plain = self._context, self._lines.next, self._plain
         while (raw := next_line()) is not None:

@@ -39,6 +39,10 @@ class Measurements:
         self.state = state
         self._latched.update(state.latched)
 
+    def has_run(self, axis: AxisIndex) -> bool:
+        """Tell whether this program has started a measuring run of the axis."""
+        return axis in self._runs
+
     def has_value(self, axis: AxisIndex) -> bool:
         """Tell whether this program has measured the axis."""
         return axis in self._runs and self.state is not None and axis in self.state.measured

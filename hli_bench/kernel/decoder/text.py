@@ -13,6 +13,7 @@ MAX_CONTINUED_LINES: Final = 64
 
 _MARK = re.compile(r'"[^"]*"?|[;(\[\]\\]')
 _COMMENT_MARK = re.compile(r"[()]")
+_BLANKS = re.compile(r"\s+")
 _NUMBER = re.compile(r"\s*(N[0-9]+)(?![0-9.]):?", re.IGNORECASE)
 _NEW_BLOCK = re.compile(r"\s*(?:N[0-9]|%)", re.IGNORECASE)
 _COMMENT_BEGIN = re.compile(r"\s*#\s*COMMENT\s+BEGIN\b", re.IGNORECASE)
@@ -94,10 +95,9 @@ class Scanner:
 
     def skip(self) -> None:
         """Move over blanks."""
-        text, pos = self.text, self.pos
-        while pos < len(text) and text[pos].isspace():
-            pos += 1
-        self.pos = pos
+        found = _BLANKS.match(self.text, self.pos)
+        if found is not None:
+            self.pos = found.end()
 
     @property
     def start(self) -> int:

@@ -60,11 +60,12 @@ Slot = int | str
 class Variables:
     """Memory of the program, and its view on axes and channel."""
 
-    __slots__ = ("_context", "_values")
+    __slots__ = ("_context", "_read", "_values")
 
     def __init__(self, context: Context) -> None:
         self._context = context
         self._values: dict[Slot, float] = {}
+        self._read: dict[str, float] = {}
 
     def at_name(self, scanner: Scanner) -> bool:
         """Tell whether a parameter or variable stands at the scanner."""
@@ -80,10 +81,10 @@ class Variables:
         area, name = self._variable(scanner)
         if area == "A":
             return self._axis_value(scanner, name, start)
-        if area == "G" and name == "MEAS_TYPE":
-            return float(self._context.measuring_type)
-        if area == "G" and name == "FEEDRATE":
-            return self._context.feed
+        if area == "G" and name in ("MEAS_TYPE", "FEEDRATE"):
+            value = self._context.measuring_type if name == "MEAS_TYPE" else self._context.feed
+            self._read[f"V.G.{name}"] = float(value)
+            return float(value)
         if area in _OWN:
             key = self._own_key(scanner, area, name)
             if key not in self._values:
@@ -105,6 +106,20 @@ class Variables:
     def put(self, slot: Slot, value: float) -> None:
         """Keep a value."""
         self._values[slot] = value
+
+    def result(self) -> dict[str, float]:
+        """Return what the program set or read, the variables of every axis it has measured among them."""
+        values = self._context.measurements
+        for axis in sorted(self._context.axes):
+            if values.has_run(axis):
+                self._note("MERF", axis)
+                self._note("MEIN", axis)
+            if values.has_value(axis):
+                for name in sorted(_NEED_VALUE):
+                    self._note(name, axis)
+        own = {str(slot): value for slot, value in self._values.items() if isinstance(slot, str)}
+        parameters = {f"P{slot}": value for slot, value in self._values.items() if isinstance(slot, int)}
+        return dict(sorted((self._read | own | parameters).items()))
 
     def _slot(self, scanner: Scanner) -> Slot:
         start = scanner.pos
@@ -176,15 +191,22 @@ class Variables:
             raise scanner.not_emulated(f"V.A.{name}: this variable has no value here yet", start)
         if name not in _READS or not self._context.path_axis(index):
             raise self._stop(scanner, errors.UNKNOWN_VARIABLE, f"V.A.{name}")
-        if name in _NEED_VALUE:
-            return self._measured(scanner, name, index)
-        return self._position(name, index)
+        self._need_value(scanner, name, index)
+        return self._note(name, index)
 
-    def _measured(self, scanner: Scanner, variable: str, axis: AxisIndex) -> float:
-        values = self._context.measurements
-        if not values.has_value(axis):
+    def _note(self, name: str, axis: AxisIndex) -> float:
+        """Return the value of an axis variable and remember it for the result."""
+        value = self._measured(name, axis) if name in _NEED_VALUE else self._position(name, axis)
+        self._read[f"V.A.{name}.{self._context.axes[axis].name}"] = value
+        return value
+
+    def _need_value(self, scanner: Scanner, variable: str, axis: AxisIndex) -> None:
+        if variable in _NEED_VALUE and not self._context.measurements.has_value(axis):
             name = self._context.axes[axis].name
             raise CncStop(errors.OFFSET_NOT_REQUESTED, scanner.block.source, name, axis=name)
+
+    def _measured(self, variable: str, axis: AxisIndex) -> float:
+        values = self._context.measurements
         match variable:
             case "MESS":
                 return values.with_offsets(axis)

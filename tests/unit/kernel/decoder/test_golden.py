@@ -11,7 +11,8 @@ CASES = Path(__file__).parents[3] / "nc"
 FOLDERS = sorted(folder for folder in CASES.iterdir() if folder.is_dir())
 REQUIREMENTS = {
     "continuation": ("M-013",),
-    "independent": ("M-012",),
+    "meas_fixed_stop": ("M-169",),
+    "meas_run": ("M-011",),
     "meas_mode": ("M-032", "M-033"),
     "meas_run_cs": ("M-047", "M-048"),
     "meas_run_standard": ("M-041", "M-042"),

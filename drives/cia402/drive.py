@@ -1,7 +1,7 @@
 """A CiA 402 drive in cyclic synchronous position mode: CANopen on one side, its servo row on the other.
 
 The compiled laws compute with the row; this class moves numbers between row and object dictionary and runs
-the state machine. It acts at a SYNC, in this order: faults that the law raised, stops that came to an end,
+the state machine. It acts at a SYNC, in this order: stops that came to an end, faults that the law raised,
 RPDO data, TPDO samples. Ramps are not emulated: to stop means that the set point stands still at once; the
 stop is over when the axis does, at the latest after STOP_TIMEOUT (decided here).
 """
@@ -197,15 +197,15 @@ class Drive:
             self._enter(State.FAULT)
 
     def on_sync(self, now: Ns) -> None:
-        """Take the law's fault, end a stop that is over."""
+        """End a stop that is over, take the law's fault. Every stop is seen for a SYNC at least."""
         self._now = now
+        if self._destination is not None and (self._stands() or now >= self._deadline):
+            self._enter(self._destination)
         code = int(self._row["fault"])
         if code == Fault.FOLLOWING_ERROR and self._options.following_error is FollowingErrorReaction.STATUS:
             self._row["fault"] = 0
         elif code:
             self.fault(code)
-        if self._destination is not None and (self._stands() or now >= self._deadline):
-            self._enter(self._destination)
 
     def on_reset(self) -> None:
         """Start as after power-on, with the dictionary's power-on values."""
@@ -239,11 +239,11 @@ class Drive:
         self._deadline = Ns(0)
         values, row = self.device.values, self._row
         row["fault"] = 0
-        row["target"] = values.number(*objects.TARGET_POSITION)
-        row["following_window"] = values.number(*objects.FOLLOWING_WINDOW)
-        row["following_timeout_ms"] = values.number(*objects.FOLLOWING_TIMEOUT)
-        self._limit_torque(objects.MAX_TORQUE, values.number(*objects.MAX_TORQUE))
-        self._write_probe_function(values.number(*objects.PROBE_FUNCTION))
+        row["target"] = values.stored(*objects.TARGET_POSITION)
+        row["following_window"] = values.stored(*objects.FOLLOWING_WINDOW)
+        row["following_timeout_ms"] = values.stored(*objects.FOLLOWING_TIMEOUT)
+        self._limit_torque(objects.MAX_TORQUE, values.stored(*objects.MAX_TORQUE))
+        self._write_probe_function(values.stored(*objects.PROBE_FUNCTION))
         self._enter(State.SWITCH_ON_DISABLED)
 
     def _hook_reads(self) -> None:
@@ -295,8 +295,8 @@ class Drive:
     def _write_controlword(self, value: Value) -> None:
         """Run the state machine; the same word again changes nothing."""
         word = int(value)
-        before, self._word = self._word, word
         was_holding = self.holding
+        before, self._word = self._word, word
         if self.state is State.OPERATION_ENABLED and word & ENABLE_OPERATION == ENABLE_OPERATION:
             self._destination = None
         for row in walk(self.state, word, before):

@@ -56,6 +56,13 @@ class ObjectValues:
             raise TypeError(f"{index:04X}:{subindex:02X} is no integer")
         return value
 
+    def stored(self, index: int, subindex: int = 0) -> int:
+        """Return the integer last stored, which a read hook may hide. Raises TypeError for other objects."""
+        value = self._values[index, subindex]
+        if not isinstance(value, int):
+            raise TypeError(f"{index:04X}:{subindex:02X} is no integer")
+        return value
+
     def put(self, index: int, subindex: int, value: Value) -> None:
         """Store a value from inside the device: no access rule, no hook."""
         self._entry(index, subindex)

@@ -1,0 +1,462 @@
+"""The CiA 402 drive: numbers between bus and row, state walk, faults, stops; python-canopen as master."""
+
+import struct
+from typing import Any
+
+import canopen
+import numpy as np
+import pytest
+
+from drives.cia402.drive import STOP_TIMEOUT, Drive, DriveOptions
+from drives.cia402.states import State, state_of
+from drives.models import servo402
+from hli_bench.base.errors import InputError
+from hli_bench.base.time import Ns
+from hli_bench.laws.rows import LOG, SERVO
+from hli_bench.protocols.canopen.aborts import AbortCode
+from hli_bench.wire.can import CanFrame
+
+NODE_ID = 3
+
+
+def command(bus: Any, word: int, target: int = 0) -> int:
+    """Send RPDO1 and a SYNC; return the statusword of TPDO1."""
+    bus.send_message(0x203, struct.pack("<Hi", word, target))
+    sent = {frame.cob_id: frame.data for frame in bus.cycle()}
+    return int(struct.unpack_from("<H", sent[0x183])[0])
+
+
+def emergencies(bus: Any) -> list[tuple[Any, ...]]:
+    return [struct.unpack_from("<HB", frame.data) for frame in bus.seen if frame.cob_id == 0x83]
+
+
+def refused(master: Any, index: int, subindex: int, data: bytes) -> AbortCode:
+    with pytest.raises(canopen.SdoAbortedError) as error:
+        master.sdo.download(index, subindex, data)
+    return AbortCode(error.value.code)
+
+
+class CyclicNode402(canopen.BaseNode402):
+    """python-canopen's 402 master whose waiting for a TPDO is one bus cycle."""
+
+    def check_statusword(self, timeout: float | None = None) -> int:  # noqa: ARG002 - the master's signature
+        for pdo in self.rpdo.values():
+            if pdo.enabled:
+                self.network.send_message(pdo.cob_id, pdo.data)
+        self.network.cycle()
+        return int(self.statusword)
+
+
+def test_python_canopens_402_master_walks_to_operation_enabled_and_back(
+    bus: Any, eds: Any, row: Any, drive: Drive
+) -> None:
+    master = bus.add_node(CyclicNode402(NODE_ID, str(eds)))
+    master.nmt.state = "OPERATIONAL"
+    master.setup_402_state_machine()
+    bus.cycle()
+    assert master.state == "SWITCH ON DISABLED"
+    master.state = "OPERATION ENABLED"
+    assert drive.state is State.OPERATION_ENABLED
+    assert row["enabled"] == 1
+    assert master.op_mode == "CYCLIC SYNCHRONOUS POSITION"
+    assert master.is_op_mode_supported("CYCLIC SYNCHRONOUS POSITION")
+    assert not master.is_op_mode_supported("HOMING")
+    master.state = "SWITCHED ON"
+    assert row["enabled"] == 0
+    master.state = "SWITCH ON DISABLED"
+    assert drive.state is State.SWITCH_ON_DISABLED
+
+
+def test_one_state_per_controlword_seen_at_the_same_sync(bus: Any, drive: Drive) -> None:
+    bus.send_message(0, b"\x01\x03")
+    drive.device.values.put(0x605C, 0, 0)
+    shown = [state_of(command(bus, word)) for word in (0x0F, 0x06, 0x07, 0x0F, 0x07, 0x06, 0x00)]
+    assert shown == [
+        State.SWITCH_ON_DISABLED,
+        State.READY_TO_SWITCH_ON,
+        State.SWITCHED_ON,
+        State.OPERATION_ENABLED,
+        State.SWITCHED_ON,
+        State.READY_TO_SWITCH_ON,
+        State.SWITCH_ON_DISABLED,
+    ]
+    command(bus, 0x06)
+    assert state_of(command(bus, 0x0F)) is State.OPERATION_ENABLED
+
+
+def test_target_takes_effect_at_the_sync_after_it_was_sent(enabled: Drive, bus: Any, row: Any) -> None:
+    bus.send_message(0x203, struct.pack("<Hi", 0x0F, -123456))
+    assert row["target"] == 0
+    bus.cycle()
+    assert row["target"] == -123456
+
+
+def test_row_numbers_appear_in_their_objects(master: Any, row: Any) -> None:
+    numbers = {
+        "demand": (0x6062, -5),
+        "position": (0x6064, -(1 << 31)),
+        "velocity": (0x606C, 77),
+        "torque_permille": (0x6077, -900),
+        "target": (0x607A, 12),
+        "probe_status": (0x60B9, 0x0301),
+        "following_error": (0x60F4, -6),
+        "digital_inputs": (0x60FD, 0x80010004),
+        "increments_per_turn": (0x608F, 4096),
+    }
+    for name, (_, value) in numbers.items():
+        row[name] = value
+    row["latch"] = (1, -2, 3, -4)
+    row["latch_time"] = (5, 6, 7, 0xFFFFFFFF)
+    row["rated_torque"] = 2.39
+    for index, value in numbers.values():
+        item = master.sdo[index] if index != 0x608F else master.sdo[index][1]
+        assert item.raw == value
+    assert [master.sdo[index].raw for index in range(0x60BA, 0x60BE)] == [1, -2, 3, -4]
+    assert [master.sdo[index].raw for index in range(0x60D1, 0x60D5)] == [5, 6, 7, 0xFFFFFFFF]
+    assert master.sdo[0x6063].raw == -(1 << 31)
+    assert master.sdo[0x60FC].raw == -5
+    assert master.sdo[0x6076].raw == 2390
+
+
+def test_following_window_reaches_the_row_and_off_is_accepted(master: Any, row: Any) -> None:
+    assert (row["following_window"], row["following_timeout_ms"]) == (1048575, 10)
+    master.sdo[0x6065].raw = 4294967295
+    master.sdo[0x6066].raw = 250
+    assert (row["following_window"], row["following_timeout_ms"]) == (4294967295, 250)
+    assert master.sdo[0x6065].raw == 4294967295
+
+
+def test_torque_clamp_is_the_least_limit_and_takes_the_full_range(master: Any, row: Any) -> None:
+    assert row["torque_limit_permille"] == 3000
+    for written, clamp in ((50000, 3000), (65535, 3000), (100, 100), (0, 0), (5000, 3000)):
+        master.sdo[0x6072].raw = written
+        assert master.sdo[0x6072].raw == written
+        assert row["torque_limit_permille"] == clamp
+    master.sdo[0x60E0].raw = 700
+    assert row["torque_limit_permille"] == 700
+    master.sdo[0x60E1].raw = 600
+    assert row["torque_limit_permille"] == 600
+    master.sdo[0x6072].raw = 500
+    assert row["torque_limit_permille"] == 500
+
+
+@pytest.mark.parametrize("mode", [-1, 0, 1, 3, 4, 6, 7, 9, 10, 127])
+def test_modes_that_are_not_advertised_are_refused(master: Any, mode: int) -> None:
+    assert master.sdo[0x6502].raw == 0x80
+    assert refused(master, 0x6060, 0, struct.pack("b", mode)) is AbortCode.RANGE
+    master.sdo[0x6060].raw = 8
+    assert master.sdo[0x6061].raw == 8
+
+
+def test_torque_offset_takes_only_zero(master: Any) -> None:
+    assert refused(master, 0x60B2, 0, b"\x01\0") is AbortCode.TOO_HIGH
+    assert refused(master, 0x60B2, 0, b"\xff\xff") is AbortCode.TOO_LOW
+    master.sdo[0x60B2].raw = 0
+
+
+@pytest.mark.req("M-129")
+def test_default_telegram_carries_latch_control_word_status_word_and_position(
+    master: Any, bus: Any, row: Any
+) -> None:
+    master.nmt.state = "OPERATIONAL"
+    bus.send_message(0x303, b"\x11\x00")
+    bus.cycle()
+    assert row["probe_function"] == 0x0011
+    row["probe_status"] = 0x0003
+    row["latch"][0] = -4711
+    assert CanFrame(0x283, struct.pack("<Hi", 3, -4711)) in bus.cycle()
+
+
+@pytest.mark.req("M-128")
+@pytest.mark.parametrize(
+    ("sources", "written", "acted"),
+    [
+        ((1, 2), 0x0019, 0x0011),
+        ((5, 2), 0x0019, 0x0015),
+        ((1, 2), 0x2900, 0x2100),
+        ((1, 5), 0x2900, 0x2500),
+        ((5, 5), 0x0011, 0x0011),
+        ((5, 5), 0x0000, 0x0000),
+    ],
+)
+def test_probe_source_is_set_up_in_the_drive(
+    master: Any, row: Any, sources: tuple[int, int], written: int, acted: int
+) -> None:
+    for sub, source in enumerate(sources, start=1):
+        master.sdo[0x60D0][sub].raw = source
+    master.sdo[0x60B8].raw = written
+    assert row["probe_function"] == acted
+    assert master.sdo[0x60B8].raw == written
+
+
+def test_probe_source_changed_while_armed_counts_at_once(master: Any, row: Any) -> None:
+    master.sdo[0x60B8].raw = 0x0019
+    master.sdo[0x60D0][1].raw = 5
+    assert row["probe_function"] == 0x0015
+    for sub, source in ((1, 2), (1, 3), (2, 1), (2, 6)):
+        assert refused(master, 0x60D0, sub, struct.pack("<h", source)) is AbortCode.RANGE
+
+
+def test_following_error_of_the_law_becomes_a_fault(enabled: Drive, bus: Any, row: Any) -> None:
+    row["velocity"] = 200_000
+    row["demand"] = 77
+    row["fault"] = 0x8611
+    row["status_flags"] = 0x2000
+    status = command(bus, 0x0F, 500)
+    assert state_of(status) is State.FAULT_REACTION_ACTIVE
+    assert status & 0x2000
+    assert (row["enabled"], row["target"]) == (1, 77)
+    assert emergencies(bus) == [(0x8611, 0x21)]
+    row["velocity"] = 0
+    assert state_of(command(bus, 0x0F)) is State.FAULT
+    assert row["enabled"] == 0
+    assert emergencies(bus) == []
+    assert enabled.device.values.get(0x603F) == 0x8611
+    assert enabled.device.values.get(0x1001) == 0x21
+    assert enabled.device.values.get(0x1003, 1) == 0x8611
+
+
+def test_fault_reset_needs_the_edge_and_sends_the_reset_message(enabled: Drive, bus: Any, row: Any) -> None:
+    command(bus, 0x8F)
+    row["fault"] = 0x8611
+    command(bus, 0x8F)
+    assert state_of(command(bus, 0x8F)) is State.FAULT
+    command(bus, 0x00)
+    row["following_elapsed_ns"] = 5
+    assert state_of(command(bus, 0x80)) is State.SWITCH_ON_DISABLED
+    assert emergencies(bus) == [(0x0000, 0)]
+    assert (row["fault"], row["following_elapsed_ns"]) == (0, 0)
+    assert enabled.device.values.get(0x603F) == 0
+    assert state_of(command(bus, 0x06)) is State.READY_TO_SWITCH_ON
+
+
+def test_fault_reaction_option_0_cuts_power_at_once(enabled: Drive, bus: Any, row: Any) -> None:
+    enabled.device.values.put(0x605E, 0, 0)
+    row["velocity"] = 200_000
+    row["fault"] = 0x8611
+    assert state_of(command(bus, 0x0F)) is State.FAULT
+    assert row["enabled"] == 0
+
+
+def test_a_stop_that_does_not_end_is_over_after_its_time(enabled: Drive, bus: Any, row: Any) -> None:
+    row["velocity"] = -200_000
+    row["fault"] = 0x8611
+    command(bus, 0x0F)
+    begun = bus.now
+    while state_of(command(bus, 0x0F)) is State.FAULT_REACTION_ACTIVE:
+        assert bus.now < begun + STOP_TIMEOUT
+    assert bus.now == begun + STOP_TIMEOUT
+
+
+def test_following_error_may_stay_a_status_bit(bus: Any, row: Any) -> None:
+    row = np.zeros(1, SERVO)[0]
+    drive = servo402.create("Z", NODE_ID, row, {"following_error": "status"})
+    drive.exchange(0x06, 0, 0, Ns(0))
+    drive.exchange(0x0F, 0, 0, Ns(0))
+    row["fault"] = 0x8611
+    assert state_of(drive.exchange(0x0F, 5, 0, Ns(0))) is State.OPERATION_ENABLED
+    assert (row["fault"], row["target"]) == (0, 5)
+    row["fault"] = 0x7305
+    assert state_of(drive.exchange(0x0F, 5, 0, Ns(0))) is State.FAULT_REACTION_ACTIVE
+
+
+@pytest.mark.parametrize(
+    ("option", "moving", "standing"),
+    [
+        (0, State.SWITCH_ON_DISABLED, State.SWITCH_ON_DISABLED),
+        (2, State.QUICK_STOP_ACTIVE, State.SWITCH_ON_DISABLED),
+        (6, State.QUICK_STOP_ACTIVE, State.QUICK_STOP_ACTIVE),
+    ],
+)
+def test_quick_stop_options(
+    enabled: Drive, bus: Any, row: Any, option: int, moving: State, standing: State
+) -> None:
+    enabled.device.values.put(0x605A, 0, option)
+    row["velocity"] = 200_000
+    row["demand"] = 1234
+    assert state_of(command(bus, 0x02, 9999)) is moving
+    assert row["enabled"] == (option != 0)
+    if option:
+        assert row["target"] == 1234
+    row["velocity"] = 0
+    assert state_of(command(bus, 0x02, 9999)) is standing
+    resumed = state_of(command(bus, 0x0F, 9999))
+    assert resumed is (State.OPERATION_ENABLED if option == 6 else State.SWITCH_ON_DISABLED)
+    if option == 6:
+        assert row["target"] == 9999
+
+
+@pytest.mark.parametrize(
+    ("index", "word", "after"),
+    [(0x605B, 0x06, State.READY_TO_SWITCH_ON), (0x605C, 0x07, State.SWITCHED_ON)],
+)
+def test_power_is_cut_at_once_or_after_a_stop(
+    enabled: Drive, bus: Any, row: Any, index: int, word: int, after: State
+) -> None:
+    enabled.device.values.put(index, 0, 1)
+    row["velocity"] = 200_000
+    row["demand"] = 10
+    assert state_of(command(bus, word, 50)) is State.OPERATION_ENABLED
+    assert (row["target"], enabled.holding) == (10, True)
+    assert state_of(command(bus, 0x0F, 50)) is State.OPERATION_ENABLED
+    assert (row["target"], enabled.holding) == (50, False)
+    command(bus, word, 50)
+    row["velocity"] = 0
+    assert state_of(command(bus, word, 50)) is after
+    assert row["enabled"] == 0
+
+
+def test_power_is_cut_at_once_without_the_option(enabled: Drive, bus: Any, row: Any) -> None:
+    enabled.device.values.put(0x605C, 0, 0)
+    row["velocity"] = 200_000
+    assert state_of(command(bus, 0x07)) is State.SWITCHED_ON
+
+
+def test_halt_holds_the_demand(enabled: Drive, bus: Any, row: Any) -> None:
+    row["demand"] = 42
+    command(bus, 0x10F, 1000)
+    assert (row["target"], row["enabled"]) == (42, 1)
+    row["demand"] = 43
+    command(bus, 0x10F, 1000)
+    assert row["target"] == 42
+    command(bus, 0x0F, 1000)
+    assert row["target"] == 1000
+
+
+@pytest.mark.parametrize(
+    ("option", "state"),
+    [
+        (0, State.OPERATION_ENABLED),
+        (1, State.FAULT_REACTION_ACTIVE),
+        (2, State.SWITCH_ON_DISABLED),
+        (3, State.QUICK_STOP_ACTIVE),
+    ],
+)
+def test_lost_connection_options(enabled: Drive, bus: Any, row: Any, option: int, state: State) -> None:
+    enabled.device.values.put(0x6007, 0, option)
+    row["velocity"] = 200_000
+    bus.send_message(0, b"\x80\x03")
+    assert enabled.state is state
+
+
+def test_lost_heartbeat_of_the_master_stops_the_drive(enabled: Drive, bus: Any, row: Any) -> None:
+    bus.send_message(0x603, struct.pack("<BHBI", 0x23, 0x1016, 1, 0x7F << 16 | 20))
+    bus.send_message(0x77F, b"\x05")
+    bus.cycle(19)
+    assert enabled.state is State.OPERATION_ENABLED
+    bus.cycle(1)
+    assert emergencies(bus) == [(0x8130, 0x11), (0x8100, 0x11)]
+    bus.cycle(1)
+    assert enabled.state is State.FAULT
+
+
+def test_reset_node_starts_as_after_power_on(enabled: Drive, bus: Any, row: Any) -> None:
+    bus.send_message(0x603, struct.pack("<BHBI", 0x2B, 0x6072, 0, 100))
+    bus.send_message(0x603, struct.pack("<BHBI", 0x2B, 0x60B8, 0, 0x11))
+    row["fault"] = 0x8611
+    bus.cycle()
+    bus.send_message(0, b"\x81\x03")
+    assert bus.seen[-1] == CanFrame(0x703, b"\0")
+    assert enabled.state is State.SWITCH_ON_DISABLED
+    assert (row["enabled"], row["fault"], row["probe_function"]) == (0, 0, 0)
+    assert row["torque_limit_permille"] == 3000
+    assert enabled.device.values.get(0x1001) == 0
+
+
+def test_options_are_checked() -> None:
+    assert DriveOptions.from_mapping({}).following_error == "fault"
+    with pytest.raises(InputError, match="'lag' is none of following_error"):
+        DriveOptions.from_mapping({"lag": 1}, "Z")
+    with pytest.raises(InputError, match="'ignore' is none of fault, status"):
+        DriveOptions.from_mapping({"following_error": "ignore"}, "Z")
+
+
+def test_ratings_of_the_machine_folder_win(row: Any) -> None:
+    row["peak_permille"] = 2000
+    servo402.create("Z", 1, row, {})
+    assert (row["peak_permille"], row["rated_torque"]) == (2000, 15.0)
+    assert row["torque_limit_permille"] == 2000
+
+
+class TestRowToRow:
+    """The exchange of numbers without frames."""
+
+    def random_cycle(self, generator: np.random.Generator) -> Any:
+        log = np.zeros(1, LOG)
+        for name in LOG.names or ():
+            field = log[name]
+            if field.dtype.kind in "iu":
+                limits = np.iinfo(field.dtype)
+                log[name] = generator.integers(
+                    limits.min, limits.max, field.shape, field.dtype, endpoint=True
+                )
+        return log[0]
+
+    def test_late_frames_equal_those_of_the_device(self, enabled: Drive, bus: Any, row: Any) -> None:
+        generator = np.random.default_rng(402)
+        for _ in range(50):
+            logged = self.random_cycle(generator)
+            row["status_flags"] = generator.integers(0, 0x10000)
+            for name in ("position", "probe_status", "latch", "digital_inputs", "torque_permille"):
+                row[name] = logged[name]
+            row["following_error"] = logged["following_error"]
+            logged["statusword"] = enabled.statusword
+            frames = enabled.encode_cycle(logged)
+            assert frames[:4] == bus.cycle()
+            logged["controlword"] = 0x0F
+            for frame in enabled.encode_cycle(logged)[4:]:
+                bus.send_message(frame.cob_id, frame.data)
+            bus.cycle()
+            assert row["target"] == logged["target"]
+            assert enabled.device.values.get(0x60B8) == logged["probe_function"]
+            bus.send_message(0x303, b"\0\0")
+
+    def test_exchange_does_what_the_frames_do(self) -> None:
+        rows = np.zeros(2, SERVO)
+        by_frames, by_numbers = (servo402.create("Z", NODE_ID, row, {}) for row in rows)
+        for drive in (by_frames, by_numbers):
+            drive.power_on()
+            drive.on_frame(CanFrame(0, b"\x01\x03"), Ns(0))
+        generator = np.random.default_rng(6040)
+        words = (0x00, 0x02, 0x06, 0x07, 0x0F, 0x0F, 0x0F, 0x10F, 0x80)
+        for cycle in range(400):
+            now = Ns(cycle * 1_000_000)
+            word = int(generator.choice(words))
+            target, probe = int(generator.integers(-1000, 1000)), int(generator.integers(0, 0x10000))
+            rows["velocity"] = generator.integers(0, 2) * 200_000
+            rows["demand"] = generator.integers(-1000, 1000)
+            if generator.integers(0, 40) == 0:
+                rows["fault"] = 0x8611
+            by_frames.on_frame(CanFrame(0x203, struct.pack("<Hi", word, target)), now)
+            by_frames.on_frame(CanFrame(0x303, struct.pack("<H", probe)), now)
+            by_frames.on_frame(CanFrame(0x80), now)
+            assert by_numbers.exchange(word, target, probe, now) == by_frames.statusword
+            assert rows[0].tobytes() == rows[1].tobytes()
+            assert by_numbers.tick(now) == by_frames.tick(now)
+
+    def test_signature(self, drive: Drive, master: Any) -> None:
+        assert not drive.cyclic_signature()
+        master.nmt.state = "OPERATIONAL"
+        assert drive.cyclic_signature()
+        master.sdo[0x1800][2].raw = 2
+        assert not drive.cyclic_signature()
+        master.sdo[0x1800][2].raw = 1
+        assert drive.cyclic_signature()
+        master.pdo.read()
+        mapping = master.tpdo[4]
+        mapping.clear()
+        mapping.add_variable(0x60FD, 0, 32)
+        mapping.save()
+        assert not drive.cyclic_signature()
+        mapping.add_variable(0x60BB, 0, 32)
+        mapping.save()
+        assert drive.cyclic_signature()
+        master.sdo[0x60D0][1].raw = 5
+        assert not drive.cyclic_signature()
+        master.sdo[0x60D0][1].raw = 1
+        assert drive.cyclic_signature()
+        drive.exchange(0x06, 0, 0, Ns(0))
+        drive.exchange(0x0F, 0, 0, Ns(0))
+        assert drive.cyclic_signature()
+        drive.exchange(0x10F, 0, 0, Ns(0))
+        assert not drive.cyclic_signature()

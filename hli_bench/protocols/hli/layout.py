@@ -9,7 +9,7 @@ from struct import Struct
 from typing import Final, Self
 
 from hli_bench.base.errors import InputError
-from hli_bench.protocols.hli.rows import MEMBER_ALIASES, Member, members
+from hli_bench.protocols.hli.rows import MEMBER_ALIASES, Member, axis_members, channel_members
 from hli_bench.wire.images import STRUCT_CODE, size_of
 
 _ST_AREA: Final = re.compile(r"^(?:gp|p)?(Ax|AC|Ch)\[(\d+)\]\^?[./]?", re.IGNORECASE)
@@ -85,10 +85,10 @@ class Layout:
         """Lay out the areas of `axes`, each (number, name, kind: linear|rotary|spindle), and the channels."""
         areas: list[Member] = []
         for number, _, kind in axes:
-            areas += members("ax", number, rotary=kind != "linear")
+            areas += axis_members(number, rotary=kind != "linear")
         for number in range(1, channels + 1):
-            areas += members("ch", number, rotary=False)
-        self._index(_placed(areas), {member.group: member.aliases for member in areas if member.aliases})
+            areas += channel_members(number)
+        self._index(_placed(areas), {member.group: member.group_aliases for member in areas})
 
     @classmethod
     def from_json(cls, text: str | bytes) -> Self:

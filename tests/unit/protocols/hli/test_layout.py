@@ -52,8 +52,8 @@ def test_the_timestamp_is_a_64_bit_unit_in_ns(layout: Any) -> None:
 
 
 def test_positions_of_rotary_axes_count_in_degrees(layout: Any) -> None:
-    assert layout.element("ax/1/lr_mc_control/probing_position/command_w").unit == "0.1 um"
-    assert layout.element("ax/5/lr_mc_control/probing_position/command_w").unit == "0.0001 deg"
+    assert layout.element("ax/1/lr_mc_control/probing_position/command_w").unit == "0.1 µm"
+    assert layout.element("ax/5/lr_mc_control/probing_position/command_w").unit == "0.0001°"
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,126 @@
+"""A PLC script as a process of its own, attached to a bench over Zenoh.
+
+`python -m hli_bench.shells.plc_process SCRIPT ENDPOINT [NAME]`; `start` runs that.
+"""
+
+import json
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Any
+
+import zenoh
+
+from hli_bench.base.errors import BenchError
+from hli_bench.plc import Task, load
+from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
+from hli_bench.shells.zenoh_client import HliClient
+from hli_bench.shells.zenoh_session import payload, queued
+
+
+class AttachedPlc:
+    """A task with its session: takes images off the net, puts commands."""
+
+    def __init__(self, client: HliClient, script: Path, name: str) -> None:
+        self._client = client
+        self._script = script
+        self._name = name
+        self._key = f"{client.machine}/plc/{name}"
+        self._packing = CommandsPacking(client.layout)
+        self._inbox: SimpleQueue[tuple[str, Any]] = SimpleQueue()
+        self._io: dict[str, bytes] = {}
+
+    def run(self) -> None:
+        """Attach and run until the bench ends. Raises InputError when the script fails or is refused."""
+        session, machine = self._client.session, self._client.machine
+        token = session.liveliness().declare_token(f"{self._key}/alive")
+        for key, kind in (
+            (f"{machine}/io/*", "io"),
+            (f"{machine}/hli/image", "image"),
+            (f"{self._key}/detached", "detached"),
+        ):
+            session.declare_subscriber(key, queued(self._inbox.put, kind))
+        session.liveliness().declare_subscriber(
+            f"{machine}/bench/alive", queued(self._inbox.put, "alive"), history=True
+        )
+        try:
+            while self._attached():
+                pass
+        finally:
+            token.undeclare()
+
+    def _attached(self) -> bool:
+        """Take part with a fresh task until the bench lets go of it (True) or ends (False)."""
+        client = self._client
+        script = load(self._script)
+        task = Task(self._name, script, script.period_us, client.layout, client.terminals)
+        for terminal in client.terminals:
+            self._io[terminal.name] = client.ask_packed(f"io/{terminal.name}")
+        terms = json.loads(
+            client.ask_packed(f"plc/{self._name}/attach", json.dumps({"period_us": script.period_us}))
+        )
+        due, period = terms["cycle"], max(1, terms["period_us"] // terms["cycle_us"])
+        publisher = client.session.declare_publisher(f"{self._key}/commands", express=True)
+        while True:
+            image = self._next_image()
+            if isinstance(image, bool):
+                publisher.undeclare()
+                return image
+            cycle, dc_ns, elements = unpack_image(image)
+            if cycle < due:
+                continue
+            commands = task.step(cycle, dc_ns, elements, self._io)
+            publisher.put(self._packing.pack(commands))
+            due += ((cycle - due) // period + 1) * period
+
+    def _next_image(self) -> bytes | bool:
+        """Return the newest image there is, or the answer of `_attached` when its time is over."""
+        image: bytes | None = None
+        while image is None or not self._inbox.empty():
+            kind, sample = self._inbox.get()
+            if kind == "image":
+                image = payload(sample)
+            elif kind == "io":
+                self._io[str(sample.key_expr).rpartition("/")[2]] = payload(sample)
+            elif kind == "detached":
+                return True
+            elif sample.kind == zenoh.SampleKind.DELETE:
+                return False
+        return image
+
+
+def attach(script: Path, endpoint: str, machine: str = "", name: str = "") -> None:
+    """Attach a script to the bench at `endpoint` and run it until the bench ends; `name`: by default the file's.
+
+    Raises EnvironmentLacks when no bench is there, InputError when the script fails or the bench refuses it.
+    """
+    load(script)
+    with HliClient(endpoint, machine) as client:
+        AttachedPlc(client, script, name or script.stem).run()
+
+
+def start(script: Path, endpoint: str, name: str = "") -> "subprocess.Popen[bytes]":
+    """Start `attach` as a process; errors go to its standard error, exit status as of the command line."""
+    arguments = [str(script), endpoint, *([name] if name else [])]
+    return subprocess.Popen([sys.executable, "-m", "hli_bench.shells.plc_process", *arguments])
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run `attach` from the command line; return the exit status."""
+    if len(arguments) not in (2, 3):
+        sys.stderr.write("SCRIPT ENDPOINT [NAME] expected\n")
+        return 2
+    try:
+        attach(Path(arguments[0]), arguments[1], name=arguments[2] if len(arguments) == 3 else "")
+    except KeyboardInterrupt:
+        return 0
+    except BenchError as error:
+        sys.stderr.write(f"{error}\n")
+        return error.exit_status
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

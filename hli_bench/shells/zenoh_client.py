@@ -1,0 +1,185 @@
+"""A bench that is up, from outside: elements, programs, state, faults. What the command line uses."""
+
+import json
+from collections.abc import Iterator, Mapping
+from queue import Empty, SimpleQueue
+from typing import Any, Final, Self
+
+from hli_bench.base.errors import EnvironmentLacks, InputError
+from hli_bench.protocols.hli.layout import Layout
+from hli_bench.shells.zenoh_session import TEXT, connect, payload, queued
+from hli_bench.wire.images import TerminalLayout
+
+ANSWER_S: Final = 5.0
+"""How long the bench may take to answer anything but a program."""
+
+PROGRAM_S: Final = 24 * 3600.0
+
+
+class HliClient:
+    """A client's session with one bench; use it as a context manager."""
+
+    def __init__(self, endpoint: str, machine: str = "") -> None:
+        """Connect; without `machine` the bench is asked for its name.
+
+        Raises EnvironmentLacks when nobody listens on `endpoint` or no bench answers there.
+        """
+        self.endpoint = endpoint
+        self.session = connect(endpoint)
+        try:
+            answers = self._ask(f"{machine or '*'}/hli/layout")
+            key, layout = next(iter(answers.items()), ("", b""))
+            if not key:
+                raise EnvironmentLacks(f"no bench{f' of machine {machine!r}' * bool(machine)} at {endpoint}")
+            self.machine = key.partition("/")[0]
+            self.layout = Layout.from_json(layout)
+            self.terminals = self._terminal_layouts()
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the session."""
+        self.session.close()
+
+    def ls(self, part: str = "") -> list[tuple[str, str, str, str]]:
+        """Return (path, type, unit, access) of the HLI elements and terminal entries with `part` in the path."""
+        rows = [
+            (element.path, element.type, element.unit, element.access) for element in self.layout.elements
+        ]
+        for terminal in self.terminals:
+            rows += [(f"io/{terminal.name}/{entry}", kind, "", "r") for entry, kind, _ in terminal.entries]
+        return [row for row in rows if part in row[0]]
+
+    def get(self, name: str) -> Any:
+        """Return the value of an element, or of all members of a unit or terminal by name.
+
+        Raises InputError when there is nothing of that name.
+        """
+        return json.loads(self._one(f"{self._path(name)}?format=json"))
+
+    def set(self, name: str, text: str) -> None:
+        """Write `text` (`TRUE`, `123`) to an element, return when done. Raises InputError when refused."""
+        path = self._path(name)
+        if path.startswith("io/"):
+            raise InputError(f"{name} is an input; only HLI elements can be set")
+        self._one(path, text, encoding=TEXT)
+
+    def watch(self, name: str, timeout_s: float | None = None) -> Iterator[Any]:
+        """Yield the value of an element, unit or terminal entry now and whenever it changes.
+
+        Ends when the bench does, or when nothing changes for `timeout_s`.
+        """
+        path = self._path(name)
+        element = path.removeprefix("hli/unit/")
+        is_member = path.startswith("hli/") and element not in self.layout.groups
+        put_path = path.rpartition("/")[0] if is_member else path
+        changes: SimpleQueue[tuple[str, Any]] = SimpleQueue()
+        watched = [
+            self.session.declare_subscriber(f"{self.machine}/{put_path}", queued(changes.put, "change")),
+            self.session.liveliness().declare_subscriber(
+                f"{self.machine}/bench/alive", queued(changes.put, "alive")
+            ),
+        ]
+        try:
+            last = self.get(name)
+            yield last
+            while self._changed(changes, timeout_s):
+                value = self.get(name)
+                if value != last:
+                    last = value
+                    yield value
+        finally:
+            for subscriber in watched:
+                subscriber.undeclare()
+
+    def run(self, text: str, name: str = "", timeout_s: float = PROGRAM_S) -> dict[str, Any]:
+        """Run an NC program and return its result. Raises InputError when the bench refuses it."""
+        selector = f"cnc/run?name={name}" if name else "cnc/run"
+        result: dict[str, Any] = json.loads(self._one(selector, text, timeout_s=timeout_s))
+        return result
+
+    def reset(self) -> None:
+        """CNC reset; returns when it has taken effect."""
+        self._one("cnc/reset")
+
+    def state(self) -> dict[str, Any]:
+        """Return one look at the bench."""
+        state: dict[str, Any] = json.loads(self._one("cnc/state"))
+        return state
+
+    def cnc_errors(self) -> list[dict[str, Any]]:
+        """Return the last error records of the CNC."""
+        errors: list[dict[str, Any]] = json.loads(self._one("cnc/errors"))
+        return errors
+
+    def hli_errors(self) -> dict[str, Any]:
+        """Return how many writes were refused, and the last of them."""
+        errors: dict[str, Any] = json.loads(self._one("hli/errors"))
+        return errors
+
+    def fault(self, order: Mapping[str, Any]) -> Any:
+        """Send a fault order and return the answer. Raises InputError when it is refused."""
+        return json.loads(self._one("bench/fault", json.dumps(order)) or b"null")
+
+    def ask_packed(self, path: str, question: str | None = None) -> bytes:
+        """Return the bench's answer to a get of `path` as it came. Raises InputError when it refuses."""
+        return self._one(path, question)
+
+    def _path(self, name: str) -> str:
+        if not name.startswith("io/"):
+            return f"hli/unit/{self.layout.resolve(name)}"
+        known = {
+            f"io/{terminal.name}{entry}"
+            for terminal in self.terminals
+            for entry in ("", *(f"/{entry}" for entry, _, _ in terminal.entries))
+        }
+        if name not in known:
+            raise InputError(f"no terminal entry {name!r}; there are {', '.join(sorted(known))}")
+        return name
+
+    def _one(
+        self, selector: str, question: str | None = None, timeout_s: float = ANSWER_S, encoding: Any = None
+    ) -> bytes:
+        answers = self._ask(f"{self.machine}/{selector}", question, timeout_s, encoding)
+        if not answers:
+            raise EnvironmentLacks(f"the bench at {self.endpoint} did not answer {selector}")
+        return next(iter(answers.values()))
+
+    def _ask(
+        self, selector: str, question: str | None = None, timeout_s: float = ANSWER_S, encoding: Any = None
+    ) -> dict[str, bytes]:
+        """Return the answers by key. Raises InputError with the bench's reason when it refuses."""
+        found: dict[str, bytes] = {}
+        for reply in self.session.get(selector, payload=question, encoding=encoding, timeout=timeout_s):
+            if reply.ok is None:
+                reason = payload(reply.err).decode("utf-8", "replace")
+                if reason != "Timeout":
+                    raise InputError(reason)
+                continue
+            found[str(reply.ok.key_expr)] = payload(reply.ok)
+        return found
+
+    def _terminal_layouts(self) -> list[TerminalLayout]:
+        rows = json.loads(self._one("hli/terminals"))
+        return [
+            TerminalLayout(row["name"], tuple((e, kind, at) for e, kind, at in row["entries"]))
+            for row in rows
+        ]
+
+    @staticmethod
+    def _changed(changes: SimpleQueue[tuple[str, Any]], timeout_s: float | None) -> bool:
+        """Wait for the next change; False when there is none in time or the bench has ended."""
+        try:
+            kind, message = changes.get(timeout=timeout_s)
+            while kind == "change" and not changes.empty():
+                kind, message = changes.get_nowait()
+        except Empty:
+            return False
+        return kind == "change" or bool(message.kind.name == "PUT")

@@ -1,0 +1,96 @@
+"""What clients ask of the bench over Zenoh, each to be answered once."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import zenoh
+
+from hli_bench.base.errors import InputError
+from hli_bench.protocols.hli.access import MemberWrite, Refusal
+from hli_bench.shells.zenoh_session import JSON, PACKED, TEXT, payload
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Request:
+    """Something asked with `key`. A put (`query` None) gets no answer."""
+
+    key: str
+    report: Callable[[list[Refusal]], None]
+    query: Any = None
+
+    def reply(self, answer: bytes | str = b"") -> None:
+        """Answer that it has been done; a str is sent as JSON."""
+        if self.query is not None:
+            with self.query as query:
+                query.reply(self.key, answer, encoding=JSON if isinstance(answer, str) else PACKED)
+
+    def refuse(self, reason: str) -> None:
+        """Answer that it was not done and why; it is counted and put in `hli/errors` too."""
+        path = self.key.partition("/")[2].removeprefix("hli/unit/")
+        self.report([Refusal(path, reason)])
+        if self.query is not None:
+            with self.query as query:
+                query.reply_err(reason, encoding=TEXT)
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class WriteRequest(Request):
+    """A member of a control unit to be written."""
+
+    write: MemberWrite
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Attach(Request):
+    """A PLC wants to take part, every `period_us`."""
+
+    plc: str
+    period_us: int
+    admit: Callable[[str], None]
+
+    def accept(self, *, cycle: int, cycle_us: int, lockstep: bool) -> None:
+        """Take the PLC in: it answers image `cycle` and from then on one every `period_us`."""
+        self.admit(self.plc)
+        self.reply(
+            json.dumps(
+                {"cycle": cycle, "cycle_us": cycle_us, "period_us": self.period_us, "lockstep": lockstep}
+            )
+        )
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class RunProgram(Request):
+    """An NC program to run, under the name it was given; the reply is the result as JSON."""
+
+    text: str
+    name: str
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Reset(Request):
+    """A CNC reset."""
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class State(Request):
+    """One look at the bench; the reply is JSON."""
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class FaultOrder(Request):
+    """A fault to inject, to clear or to list: the JSON object that the client sent."""
+
+    order: Mapping[str, Any]
+
+
+def json_object(query: zenoh.Query) -> dict[str, Any]:
+    """Return the JSON object in a query's payload. Raises InputError when it is something else."""
+    try:
+        found = json.loads(payload(query))
+    except ValueError as error:
+        raise InputError(f"no JSON: {error}") from error
+    if not isinstance(found, dict):
+        raise InputError("a JSON object expected")
+    return found

@@ -1,0 +1,382 @@
+"""The bench's side of the HLI over Zenoh: network threads only queue, the bench loop does everything else."""
+
+import json
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict
+from queue import Empty, SimpleQueue
+from time import monotonic
+from typing import Any, Final, Self
+
+import zenoh
+
+from hli_bench.base.errors import InputError
+from hli_bench.base.time import Ns
+from hli_bench.protocols.hli.access import MemberWrite, Refusal
+from hli_bench.protocols.hli.layout import Layout
+from hli_bench.protocols.hli.packing import CommandsPacking, pack_image
+from hli_bench.shells.zenoh_requests import (
+    Attach,
+    FaultOrder,
+    Request,
+    Reset,
+    RunProgram,
+    State,
+    WriteRequest,
+    json_object,
+)
+from hli_bench.shells.zenoh_session import JSON, PACKED, is_text, listen, payload, queued
+from hli_bench.shells.zenoh_values import Answers, LastValues
+from hli_bench.wire.hli import Commands, Write
+from hli_bench.wire.images import TerminalLayout
+
+REPLIES_A_CALL: Final = 64
+"""Replies to reading queries sent per look at the inbox, so that a wide query does not stop the cycle."""
+
+
+class HliServer:
+    """A router session with the keys of a machine; use it as a context manager and from one thread.
+
+    `late` counts, by PLC, commands that answered an older cycle; `refused` counts writes and requests.
+    """
+
+    def __init__(
+        self, endpoint: str, machine: str, layout: Layout, terminals: Sequence[TerminalLayout]
+    ) -> None:
+        """Listen on `endpoint`. Raises EnvironmentLacks when that is not possible."""
+        self.machine = machine
+        self.late: dict[str, int] = {}
+        self._values = LastValues(layout, terminals)
+        self._packing = CommandsPacking(layout)
+        self._mail: dict[str, deque[bytes]] = {}
+        self._strangers: set[str] = set()
+        self._departed: list[str] = []
+        self._requests: list[Request] = []
+        self._answers: deque[tuple[Any, Answers]] = deque()
+        self._inbox: SimpleQueue[tuple[Callable[[Any], None], Any]] = SimpleQueue()
+        self._session = listen(endpoint)
+        try:
+            self._declare()
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the session; a process with callbacks that does not hangs at its exit."""
+        self._session.close()
+
+    @property
+    def refused(self) -> int:
+        """Writes and requests refused so far."""
+        return self._values.refused
+
+    @property
+    def attached(self) -> list[str]:
+        """Names of the PLCs that take part."""
+        return list(self._mail)
+
+    def publish(
+        self,
+        cycle: int,
+        dc_ns: Ns,
+        image: bytes,
+        units: Iterable[tuple[str, bytes]],
+        io: Iterable[tuple[str, bytes]],
+    ) -> None:
+        """Put what changed in a cycle: terminals, units, then the image, which says that all is there."""
+        for terminal, data in io:
+            for path, packed in self._values.take_terminal(terminal, data):
+                self._put(path, packed)
+        for path, packed in units:
+            self._put(f"hli/unit/{path}", packed)
+        self._values.cycle, self._values.dc_ns, self._values.image = cycle, dc_ns, image
+        self._image.put(pack_image(cycle, dc_ns, image))
+
+    def has_image_subscribers(self) -> bool:
+        """Tell whether anybody listens to `hli/image`."""
+        return bool(self._image.matching_status.matching)
+
+    def requests(self) -> list[Request]:
+        """Return what was asked since the last call, in order; reading queries are answered here."""
+        self._drain()
+        self._answer(REPLIES_A_CALL)
+        requests, self._requests = self._requests, []
+        return requests
+
+    def wait_request(self, timeout_s: float) -> list[Request]:
+        """Wait until something is asked or a PLC departs, at most `timeout_s`; return what was asked."""
+        deadline = monotonic() + timeout_s
+        while True:
+            requests = self.requests()
+            remaining = deadline - monotonic()
+            if requests or self._departed or remaining <= 0:
+                return requests
+            if not self._answers:
+                self._wait(remaining)
+
+    def commands(self, plc: str, cycle: int, timeout_s: float) -> Commands | None:
+        """Wait for the answer of `plc` to `cycle`; None when it does not come in time or the PLC departs.
+
+        Answers to older cycles that arrive meanwhile are counted in `late`; their writes come first, because
+        what a PLC wrote counts from then on. An answer to a cycle that has not been is refused.
+        """
+        deadline = monotonic() + timeout_s
+        overdue: tuple[Write, ...] = ()
+        while plc in self._mail:
+            mail = self._mail[plc]
+            while mail:
+                commands = self._unpacked(plc, mail.popleft())
+                if commands is None:
+                    continue
+                if commands.cycle == cycle:
+                    return Commands(plc, cycle, overdue + commands.writes) if overdue else commands
+                if commands.cycle < cycle:
+                    self.late[plc] = self.late.get(plc, 0) + 1
+                    overdue += commands.writes
+                else:
+                    self._refuse_commands(plc, f"answers cycle {commands.cycle}, the bench is at {cycle}")
+            remaining = deadline - monotonic()
+            if remaining <= 0:
+                break
+            self._wait(remaining)
+        return Commands(plc, cycle, overdue) if overdue else None
+
+    def latest_commands(self, plc: str) -> Commands | None:
+        """Return all that `plc` wrote since the last call, with the newest cycle it answered, or None."""
+        self._drain()
+        mail = self._mail.get(plc)
+        writes: tuple[Write, ...] = ()
+        cycle = -1
+        while mail:
+            commands = self._unpacked(plc, mail.popleft())
+            if commands is not None:
+                writes += commands.writes
+                cycle = max(cycle, commands.cycle)
+        return Commands(plc, cycle, writes) if cycle >= 0 else None
+
+    def departed(self) -> list[str]:
+        """Return the PLCs whose session ended or froze since the last call; they are attached no more."""
+        self._drain()
+        departed, self._departed = self._departed, []
+        return departed
+
+    def detach(self, plc: str) -> None:
+        """Let go of a PLC that stalls; when it writes again it is told to attach anew."""
+        self._mail.pop(plc, None)
+
+    def report(self, refusals: Iterable[Refusal]) -> None:
+        """Count refusals and put each in `hli/errors`."""
+        for refusal in refusals:
+            record = {"cycle": self._values.cycle, **asdict(refusal)}
+            self._values.refused += 1
+            self._values.refusals.append(record)
+            self._put("hli/errors", json.dumps(record))
+
+    def put_state(self, state: Mapping[str, Any]) -> None:
+        """Put `cnc/state`; to be called when mode or state changed."""
+        self._put("cnc/state", json.dumps(state))
+
+    def put_error(self, error: Mapping[str, Any]) -> None:
+        """Put an error record of the CNC in `cnc/errors` and keep it for a get."""
+        self._values.errors.append(error)
+        self._put("cnc/errors", json.dumps(error))
+
+    def _declare(self) -> None:
+        session, machine, values = self._session, self.machine, self._values
+        self._image = session.declare_publisher(
+            f"{machine}/hli/image",
+            encoding=PACKED,
+            congestion_control=zenoh.CongestionControl.DROP,
+            express=True,
+        )
+        self._alive = session.liveliness().declare_token(f"{machine}/bench/alive")
+        put = self._inbox.put
+        for key, on_sample in (
+            ("plc/*/commands", self._on_commands),
+            ("hli/unit/**", self._on_member),
+            ("cnc/reset", self._on_reset_put),
+        ):
+            session.declare_subscriber(f"{machine}/{key}", queued(put, on_sample))
+        session.liveliness().declare_subscriber(f"{machine}/plc/*/alive", queued(put, self._on_alive))
+        for key, on_query in (
+            ("hli/layout", self._reader(values.whole_layout)),
+            ("hli/terminals", self._reader(values.terminal_layouts)),
+            ("hli/image", self._reader(values.whole_image)),
+            ("hli/errors", self._reader(values.hli_errors)),
+            ("cnc/errors", self._reader(values.cnc_errors)),
+            ("hli/unit/**", self._on_unit_query),
+            ("io/**", self._on_io_query),
+            ("cnc/state", self._on_state),
+            ("cnc/run", self._on_run),
+            ("cnc/reset", self._on_reset),
+            ("bench/fault", self._on_fault),
+            ("plc/*/attach", self._on_attach),
+        ):
+            session.declare_queryable(f"{machine}/{key}", queued(put, on_query), complete=True)
+
+    def _put(self, path: str, value: bytes | str) -> None:
+        encoding = JSON if isinstance(value, str) else PACKED
+        self._session.put(f"{self.machine}/{path}", value, encoding=encoding)
+
+    def _path(self, message: zenoh.Sample | zenoh.Query) -> str:
+        return str(message.key_expr).removeprefix(f"{self.machine}/")
+
+    def _asked(self, path: str, query: zenoh.Query | None = None) -> dict[str, Any]:
+        return {"key": f"{self.machine}/{path}", "report": self.report, "query": query}
+
+    def _drain(self) -> None:
+        while not self._inbox.empty():
+            handle, message = self._inbox.get_nowait()
+            handle(message)
+
+    def _wait(self, timeout_s: float) -> None:
+        try:
+            handle, message = self._inbox.get(timeout=timeout_s)
+        except Empty:
+            return
+        handle(message)
+
+    def _on_commands(self, sample: zenoh.Sample) -> None:
+        plc = _plc(sample)
+        mail = self._mail.get(plc)
+        if mail is not None:
+            mail.append(payload(sample))
+        elif plc not in self._strangers:
+            self._strangers.add(plc)
+            self._refuse_commands(plc, "attach first")
+            self._put(f"plc/{plc}/detached", b"")
+
+    def _unpacked(self, plc: str, message: bytes) -> Commands | None:
+        """Return the commands; of a malformed message the cycle only, None when not even that is there."""
+        try:
+            return self._packing.unpack(plc, message)
+        except InputError as error:
+            self._refuse_commands(plc, error.message)
+        try:
+            return Commands(plc, self._packing.cycle(message), ())
+        except InputError:
+            return None
+
+    def _refuse_commands(self, plc: str, reason: str) -> None:
+        self.report([Refusal(f"plc/{plc}/commands", reason, plc)])
+
+    def _on_alive(self, sample: zenoh.Sample) -> None:
+        plc = _plc(sample)
+        if sample.kind == zenoh.SampleKind.PUT:
+            self._strangers.discard(plc)
+        elif self._mail.pop(plc, None) is not None:
+            self._departed.append(plc)
+
+    def _on_attach(self, query: zenoh.Query) -> None:
+        path, plc = self._path(query), _plc(query)
+        reason, period = "", 0
+        try:
+            period = int(json_object(query)["period_us"])
+        except (InputError, KeyError, TypeError, ValueError):
+            reason = 'JSON {"period_us": whole number} expected'
+        if not reason and (period <= 0 or "*" in path):
+            reason = "a period above 0 and the name of one PLC expected"
+        if plc in self._mail:
+            reason = f"a PLC called {plc!r} is attached already"
+        if reason:
+            Request(**self._asked(path, query)).refuse(reason)
+            return
+        self._requests.append(
+            Attach(**self._asked(path, query), plc=plc, period_us=period, admit=self._admit)
+        )
+
+    def _admit(self, plc: str) -> None:
+        self._strangers.discard(plc)
+        self._mail[plc] = deque()
+
+    def _on_member(self, sample: zenoh.Sample) -> None:
+        if sample.kind == zenoh.SampleKind.PUT:
+            self._requests.append(self._write(sample, None))
+        else:
+            Request(**self._asked(self._path(sample))).refuse("a member cannot be deleted")
+
+    def _write(self, message: zenoh.Sample | zenoh.Query, query: zenoh.Query | None) -> WriteRequest:
+        path = self._path(message)
+        writer = message.attachment.to_string() if message.attachment else ""
+        member = path.removeprefix("hli/unit/")
+        write = MemberWrite(member, payload(message), is_text(message.encoding), writer)
+        return WriteRequest(**self._asked(path, query), write=write)
+
+    def _on_state(self, query: zenoh.Query) -> None:
+        self._requests.append(State(**self._asked("cnc/state", query)))
+
+    def _on_reset(self, query: zenoh.Query) -> None:
+        self._requests.append(Reset(**self._asked("cnc/reset", query)))
+
+    def _on_reset_put(self, _: zenoh.Sample) -> None:
+        self._requests.append(Reset(**self._asked("cnc/reset")))
+
+    def _on_run(self, query: zenoh.Query) -> None:
+        text, name = payload(query).decode("utf-8", "replace"), query.parameters.get("name") or ""
+        run = RunProgram(**self._asked("cnc/run", query), text=text, name=name)
+        if text.strip():
+            self._requests.append(run)
+        else:
+            run.refuse("no NC program in the payload")
+
+    def _on_fault(self, query: zenoh.Query) -> None:
+        try:
+            order = json_object(query)
+        except InputError as error:
+            Request(**self._asked("bench/fault", query)).refuse(error.message)
+            return
+        self._requests.append(FaultOrder(**self._asked("bench/fault", query), order=order))
+
+    def _reader(self, answers: Callable[[], Answers]) -> Callable[[zenoh.Query], None]:
+        return lambda query: self._answers.append((query, answers()))
+
+    def _on_unit_query(self, query: zenoh.Query) -> None:
+        path, as_text = self._path(query), _wants_text(query)
+        if "*" in path:
+            answers = self._values.units(self._wanted(query), as_text=as_text)
+            self._answers.append((query, answers))
+            return
+        if query.payload is not None:
+            self._requests.append(self._write(query, query))
+            return
+        try:
+            name = self._values.layout.resolve(path.removeprefix("hli/unit/"))
+        except InputError as error:
+            Request(**self._asked(path, query)).refuse(error.message)
+            return
+        self._answers.append((query, iter([(path, self._values.unit(name, as_text=as_text))])))
+
+    def _on_io_query(self, query: zenoh.Query) -> None:
+        answers = self._values.terminal_images(self._wanted(query), as_text=_wants_text(query))
+        self._answers.append((query, answers))
+
+    def _wanted(self, query: zenoh.Query) -> Callable[[str], bool]:
+        key = query.key_expr
+        return lambda path: key.intersects(f"{self.machine}/{path}")
+
+    def _answer(self, budget: int) -> None:
+        while self._answers and budget > 0:
+            query, answers = self._answers[0]
+            for path, value in answers:
+                encoding = JSON if isinstance(value, str) else PACKED
+                query.reply(f"{self.machine}/{path}", value, encoding=encoding)
+                budget -= 1
+                if budget <= 0:
+                    return
+            self._answers.popleft()
+            query.drop()
+
+
+def _plc(message: zenoh.Sample | zenoh.Query) -> str:
+    """Return the name in `<machine>/plc/<name>/<word>`."""
+    return str(message.key_expr).split("/")[-2]
+
+
+def _wants_text(query: zenoh.Query) -> bool:
+    return query.parameters.get("format") in ("text", "json")

@@ -1,0 +1,75 @@
+"""How a Zenoh session is opened: no scouting, no gossip, no shared memory, a lease of 500 ms."""
+
+import json
+import re
+from typing import Any, Final
+
+import zenoh
+
+from hli_bench.base.errors import EnvironmentLacks
+
+DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
+LEASE_MS: Final = 500
+"""A session that says nothing for so long is gone: this is how a frozen PLC is noticed."""
+
+TEXT: Final = zenoh.Encoding.TEXT_PLAIN
+JSON: Final = zenoh.Encoding.APPLICATION_JSON
+PACKED: Final = zenoh.Encoding.APPLICATION_OCTET_STREAM
+_TEXTS: Final = ("text/", "application/json", "zenoh/string")
+_SOURCE_PLACE: Final = re.compile(r"\s+at /.*", re.DOTALL)
+
+
+def listen(endpoint: str) -> Any:
+    """Open the bench's session: a router at `endpoint`. Raises EnvironmentLacks when it cannot listen."""
+    try:
+        return zenoh.open(_config("router", {"listen/endpoints": [endpoint]}))
+    except zenoh.ZError as error:
+        raise EnvironmentLacks(
+            f"Zenoh cannot listen on {endpoint} ({_reason(error)}); is a bench up already? "
+            "Choose another place with --zenoh tcp/127.0.0.1:PORT"
+        ) from error
+
+
+def connect(endpoint: str) -> Any:
+    """Open a client's session to `endpoint`. Raises EnvironmentLacks when nobody listens there."""
+    try:
+        return zenoh.open(_config("client", {"connect/endpoints": [endpoint]}))
+    except zenoh.ZError as error:
+        raise EnvironmentLacks(
+            f"no bench listens on {endpoint} ({_reason(error)}); start one with `hli-bench serve`"
+        ) from error
+
+
+def queued(put: Any, kind: Any) -> Any:
+    """Return a handler that puts (kind, message) in a queue and does nothing else on the network thread."""
+    return zenoh.handlers.Callback(lambda message: put((kind, message)), indirect=False)
+
+
+def is_text(encoding: zenoh.Encoding | None) -> bool:
+    """Tell whether a payload of that encoding is text or JSON rather than packed."""
+    return encoding is not None and str(encoding).startswith(_TEXTS)
+
+
+def payload(message: zenoh.Sample | zenoh.Query | zenoh.ReplyError) -> bytes:
+    """Return the bytes of a message, none for a query without."""
+    return message.payload.to_bytes() if message.payload is not None else b""
+
+
+def _config(mode: str, settings: dict[str, Any]) -> zenoh.Config:
+    config = zenoh.Config()
+    settings = {
+        "mode": mode,
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "transport/shared_memory/enabled": False,
+        "transport/link/tx/lease": LEASE_MS,
+        **settings,
+    }
+    for key, value in settings.items():
+        config.insert_json5(key, json.dumps(value))
+    return config
+
+
+def _reason(error: zenoh.ZError) -> str:
+    """Return the library's message without the place in its own sources."""
+    return _SOURCE_PLACE.sub("", str(error)).strip(" .]")

@@ -1,0 +1,560 @@
+"""The HLI over real Zenoh sessions: the bench's side in this process, clients in others."""
+
+import json
+import signal
+import socket
+import struct
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Any
+
+import pytest
+
+from hli_bench.base import loading
+from hli_bench.base.errors import EnvironmentLacks, InputError
+from hli_bench.protocols.hli.access import Access
+from hli_bench.protocols.hli.image import Image
+from hli_bench.protocols.hli.layout import Layout
+from hli_bench.shells import plc_process
+from hli_bench.shells.zenoh_client import HliClient
+from hli_bench.shells.zenoh_requests import (
+    Attach,
+    FaultOrder,
+    Request,
+    Reset,
+    RunProgram,
+    State,
+    WriteRequest,
+)
+from hli_bench.shells.zenoh_server import HliServer
+from hli_bench.shells.zenoh_session import connect, queued
+from hli_bench.wire.hli import Commands
+from hli_bench.wire.images import TerminalLayout
+
+AXES = [(number, name, "linear") for number, name in enumerate(("X", "Y", "Z", "X2", "A", "B", "S"), 1)]
+LAYOUT = Layout(AXES)
+PROBE = TerminalLayout("probe", (("ch2/input", "BOOL", 0), ("ch2/latch_pos", "UNS64", 8)))
+CAMS = TerminalLayout("cams", tuple((f"ch{number}/input", "BOOL", number - 1) for number in range(1, 9)))
+UNIT = "ax/3/lr_mc_control/probing_signal"
+TIME = "ax/3/lr_mc_control/timestamp"
+PATIENCE_S = 30.0
+
+
+def free_endpoint() -> str:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return f"tcp/127.0.0.1:{listener.getsockname()[1]}"
+
+
+class SmallBench:
+    """What a bench does with its server, without a machine: writes are applied, requests answered."""
+
+    def __init__(self) -> None:
+        self.endpoint = free_endpoint()
+        self.image = Image(LAYOUT)
+        self.access = Access(self.image)
+        self.server = HliServer(self.endpoint, "demo", LAYOUT, [PROBE, CAMS])
+        self.cycle = 0
+        self.seen: list[Request] = []
+
+    def publish(self, **io: bytes) -> None:
+        self.cycle += 1
+        changed = self.image.take_changed()
+        self.server.publish(
+            self.cycle, self.cycle * 1_000_000, self.image.snapshot(), changed, list(io.items())
+        )
+
+    def answer(self, request: Request) -> None:
+        self.seen.append(request)
+        match request:
+            case WriteRequest():
+                refusals = self.access.apply(request.write)
+                if refusals:
+                    request.refuse(refusals[0].reason)
+                else:
+                    self.publish()
+                    request.reply()
+            case Attach():
+                request.accept(cycle=self.cycle + 1, cycle_us=1000, lockstep=True)
+            case RunProgram():
+                request.reply(
+                    json.dumps({"status": "completed", "program": request.name, "text": request.text})
+                )
+            case State():
+                request.reply(json.dumps({"mode": 2}))
+            case FaultOrder():
+                request.reply(json.dumps(request.order))
+            case Reset():
+                request.reply()
+
+    def serve(self, done: Callable[[], bool]) -> None:
+        for _ in range(int(PATIENCE_S / 0.05)):
+            for request in self.server.wait_request(0.05):
+                self.answer(request)
+            if done():
+                return
+        pytest.fail("what was waited for did not come")
+
+    def exchange(self, plc: str, **io: bytes) -> Commands:
+        self.publish(**io)
+        commands = self.server.commands(plc, self.cycle, PATIENCE_S)
+        assert commands is not None
+        self.server.report(self.access.apply(commands))
+        return commands
+
+    def value(self, path: str) -> Any:
+        return self.image.get(LAYOUT.element(path).id)
+
+
+@pytest.fixture
+def bench() -> Iterator[SmallBench]:
+    bench = SmallBench()
+    with bench.server:
+        yield bench
+
+
+@pytest.fixture(scope="module")
+def elsewhere() -> Iterator[Callable[..., "Future[Any]"]]:
+    """Runs a function of this module in another process."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        yield pool.submit
+
+
+def ask(bench: SmallBench, elsewhere: Any, function: Callable[..., Any], *arguments: Any) -> Any:
+    future = elsewhere(function, bench.endpoint, *arguments)
+    bench.serve(future.done)
+    return future.result()
+
+
+# --- run in the other process
+
+
+def with_client(endpoint: str, method: str, *arguments: Any) -> Any:
+    with HliClient(endpoint) as client:
+        try:
+            return getattr(client, method)(*arguments)
+        except InputError as error:
+            return f"InputError: {error}"
+
+
+def plain_get(endpoint: str, key: str, question: bytes | None = None) -> list[tuple[str, bytes, str]]:
+    with connect(endpoint) as session:
+        return [
+            (str(reply.ok.key_expr), reply.ok.payload.to_bytes(), str(reply.ok.encoding))
+            if reply.ok is not None
+            else ("", reply.err.payload.to_bytes(), "")
+            for reply in session.get(key, payload=question, timeout=10.0)
+        ]
+
+
+def plain_put(endpoint: str, key: str, value: bytes, encoding: str, attachment: str | None = None) -> Any:
+    """Put, then wait for the record of the refusal or the changed unit, whichever comes."""
+    answers: SimpleQueue[tuple[str, bytes]] = SimpleQueue()
+    with connect(endpoint) as session:
+        for watched in ("demo/hli/errors", "demo/hli/image"):
+            session.declare_subscriber(
+                watched, lambda sample: answers.put((str(sample.key_expr), sample.payload.to_bytes()))
+            )
+        session.put(key, value, encoding=encoding, attachment=attachment)
+        key, answer = answers.get(timeout=PATIENCE_S)
+        return json.loads(answer) if key.endswith("errors") else key
+
+
+def lockstep_plc(endpoint: str, cycles: int) -> list[str]:
+    """Answer `cycles` images; return where what belongs to an image had not arrived before it."""
+    wrong: list[str] = []
+    inbox: SimpleQueue[tuple[str, Any]] = SimpleQueue()
+    time_id = LAYOUT.element(f"{TIME}/command_w").id
+    with connect(endpoint) as session:
+        token = session.liveliness().declare_token("demo/plc/lock/alive")
+        for key in ("demo/io/probe", f"demo/hli/unit/{TIME}", "demo/hli/image"):
+            session.declare_subscriber(key, queued(inbox.put, key))
+        for reply in session.get("demo/plc/lock/attach", payload='{"period_us": 1000}', timeout=10.0):
+            due = json.loads(reply.ok.payload.to_string())["cycle"]
+        seen, first = {}, due
+        while due < first + cycles:
+            key, sample = inbox.get(timeout=PATIENCE_S)
+            data = sample.payload.to_bytes()
+            if not key.endswith("image"):
+                seen[key] = data
+                continue
+            cycle, _ = struct.unpack_from("<Qq", data)
+            if cycle != due:
+                wrong.append(f"image {cycle} instead of {due}")
+            if struct.unpack_from("<Q", seen["demo/io/probe"], 8)[0] != cycle:
+                wrong.append(f"terminal of {cycle} late")
+            if cycle > first and struct.unpack_from("<q", seen[f"demo/hli/unit/{TIME}"], 9)[0] != cycle - 1:
+                wrong.append(f"unit of {cycle} late")
+            session.put("demo/plc/lock/commands", struct.pack("<QHq", cycle, time_id, cycle), express=True)
+            due += 1
+        token.undeclare()
+    return wrong
+
+
+def send_commands(endpoint: str, plc: str, messages: list[bytes], *, attach: bool) -> str:
+    """Send messages as a PLC; return what came back: nothing, or that it is to attach."""
+    told: SimpleQueue[str] = SimpleQueue()
+    with connect(endpoint) as session:
+        session.declare_subscriber(f"demo/plc/{plc}/detached", lambda _: told.put("detached"))
+        token = session.liveliness().declare_token(f"demo/plc/{plc}/alive")
+        if attach:
+            list(session.get(f"demo/plc/{plc}/attach", payload='{"period_us": 1000}', timeout=10.0))
+        for message in messages:
+            session.put(f"demo/plc/{plc}/commands", message)
+        list(session.get("demo/cnc/state", timeout=10.0))
+        answer = "" if attach else told.get(timeout=PATIENCE_S)
+        token.undeclare()
+        return answer
+
+
+# --- keys and values
+
+
+def test_a_taken_port_is_told(bench: SmallBench) -> None:
+    with pytest.raises(EnvironmentLacks, match=r"cannot listen on .*in use.*--zenoh"):
+        HliServer(bench.endpoint, "demo", LAYOUT, [])
+
+
+def test_a_client_without_a_bench_is_told_what_to_do() -> None:
+    with pytest.raises(EnvironmentLacks, match=r"no bench listens on .*hli-bench serve"):
+        HliClient(free_endpoint())
+
+
+def test_the_layout_is_a_list_of_all_elements(bench: SmallBench, elsewhere: Any) -> None:
+    ((key, text, encoding),) = ask(bench, elsewhere, plain_get, "*/hli/layout")
+    assert (key, encoding) == ("demo/hli/layout", "application/json")
+    assert [row["path"] for row in json.loads(text)] == [element.path for element in LAYOUT.elements]
+
+
+@pytest.mark.req("M-235", "M-238")
+def test_units_and_members_are_got_packed_or_as_json_by_new_and_old_names(
+    bench: SmallBench, elsewhere: Any
+) -> None:
+    bench.image.set(LAYOUT.element(f"{TIME}/command_w").id, -7)
+    bench.publish()
+    cases = {
+        f"demo/hli/unit/{TIME}": struct.pack("<q?qq", 0, False, -7, 0),
+        f"demo/hli/unit/{TIME}/command_w": struct.pack("<q", -7),
+        f"demo/hli/unit/{TIME}/X_Command": struct.pack("<q", -7),
+        "demo/hli/unit/ax/3/MCControlBoolUnit_ProbingSignal": bytes(4),
+    }
+    for key, packed in cases.items():
+        assert ask(bench, elsewhere, plain_get, key) == [(key, packed, "application/octet-stream")]
+    ((_, text, _),) = ask(bench, elsewhere, plain_get, f"demo/hli/unit/{TIME}?format=json")
+    assert json.loads(text) == {"request_r": 0, "enable_w": False, "command_w": -7, "state_r": 0}
+
+
+def test_a_wide_query_gets_all_units_and_members(bench: SmallBench, elsewhere: Any) -> None:
+    keys = {key for key, _, _ in ask(bench, elsewhere, plain_get, "demo/hli/unit/**")}
+    assert keys == {f"demo/hli/unit/{path}" for path in (*LAYOUT.groups, *(e.path for e in LAYOUT.elements))}
+
+
+def test_an_unknown_path_is_refused_with_near_names_and_counted(bench: SmallBench, elsewhere: Any) -> None:
+    ((_, reason, _),) = ask(bench, elsewhere, plain_get, "demo/hli/unit/ax/3/lr_mc_control/timestmp")
+    assert b"near names: ax/3/lr_mc_control/timestamp" in reason
+    assert bench.server.refused == 1
+
+
+def test_terminals_are_got_whole_and_by_entry(bench: SmallBench, elsewhere: Any) -> None:
+    bench.publish(probe=struct.pack("<?7xQ", True, 2**40))
+    found = {key: data for key, data, _ in ask(bench, elsewhere, plain_get, "demo/io/probe/**")}
+    assert found == {
+        "demo/io/probe": struct.pack("<?7xQ", True, 2**40),
+        "demo/io/probe/ch2/input": b"\x01",
+        "demo/io/probe/ch2/latch_pos": struct.pack("<Q", 2**40),
+    }
+
+
+def test_the_client_lists_gets_and_sets_elements(bench: SmallBench, elsewhere: Any) -> None:
+    rows = ask(bench, elsewhere, with_client, "ls", "ch2")
+    assert rows == [
+        ("io/probe/ch2/input", "BOOL", "", "r"),
+        ("io/probe/ch2/latch_pos", "UNS64", "", "r"),
+        ("io/cams/ch2/input", "BOOL", "", "r"),
+    ]
+    assert ask(bench, elsewhere, with_client, "set", f"{UNIT}/X_Command", "TRUE") is None
+    assert bench.value(f"{UNIT}/command_w") is True
+    assert ask(bench, elsewhere, with_client, "get", f"{UNIT}/command_w") is True
+    assert ask(bench, elsewhere, with_client, "get", "io/cams")["ch3/input"] is False
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "reason"),
+    [
+        (f"{UNIT}/state_r", "TRUE", "written by the CNC"),
+        (f"{TIME}/command_w", "soon", "'soon' is no SGN64"),
+        ("io/probe/ch2/input", "TRUE", "is an input"),
+        ("ax/3/nothing", "1", "no HLI element"),
+    ],
+)
+def test_the_client_is_told_why_a_write_is_refused(
+    bench: SmallBench, elsewhere: Any, name: str, text: str, reason: str
+) -> None:
+    assert reason in ask(bench, elsewhere, with_client, "set", name, text)
+
+
+def test_program_state_reset_and_faults_reach_the_bench(bench: SmallBench, elsewhere: Any) -> None:
+    result = ask(bench, elsewhere, with_client, "run", "N10 M30", "a.nc")
+    assert result == {"status": "completed", "program": "a.nc", "text": "N10 M30"}
+    assert ask(bench, elsewhere, with_client, "state") == {"mode": 2}
+    assert ask(bench, elsewhere, with_client, "reset") is None
+    assert ask(bench, elsewhere, with_client, "fault", {"inject": "probe_stuck"}) == {"inject": "probe_stuck"}
+    assert [type(request) for request in bench.seen] == [RunProgram, State, Reset, FaultOrder]
+    assert "no NC program" in ask(bench, elsewhere, with_client, "run", "  ")
+
+
+def test_error_records_of_the_cnc_are_kept(bench: SmallBench, elsewhere: Any) -> None:
+    bench.server.put_error({"id": 50886, "axis": "Z"})
+    assert ask(bench, elsewhere, with_client, "cnc_errors") == [{"id": 50886, "axis": "Z"}]
+
+
+# --- writes by put
+
+
+@pytest.mark.parametrize(
+    ("value", "encoding"),
+    [(struct.pack("<q", -5), "zenoh/bytes"), (b"-5", "text/plain"), (b"-5", "application/json")],
+)
+def test_a_member_is_put_packed_or_as_text(
+    bench: SmallBench, elsewhere: Any, value: bytes, encoding: str
+) -> None:
+    key = f"demo/hli/unit/{TIME}/command_w"
+    assert ask(bench, elsewhere, plain_put, key, value, encoding) == "demo/hli/image"
+    assert bench.value(f"{TIME}/command_w") == -5
+
+
+@pytest.mark.req("M-237")
+@pytest.mark.parametrize(
+    ("path", "value", "reason"),
+    [
+        (f"{UNIT}/state_r", b"\x01", "written by the CNC"),
+        (f"{UNIT}/command_w", b"\x01\x00", "2 bytes, BOOL takes 1"),
+        ("ax/3/nothing/command_w", b"\x01", "no HLI element"),
+        (UNIT, b"\x01\x01\x01\x01", "whole unit"),
+    ],
+)
+def test_a_put_that_is_refused_is_counted_and_reported(
+    bench: SmallBench, elsewhere: Any, path: str, value: bytes, reason: str
+) -> None:
+    record = ask(bench, elsewhere, plain_put, f"demo/hli/unit/{path}", value, "zenoh/bytes")
+    assert record["path"] == path
+    assert reason in record["reason"]
+    assert bench.server.refused == 1
+    assert ask(bench, elsewhere, with_client, "hli_errors") == {"refused": 1, "last": [record]}
+
+
+def test_a_unit_of_a_plc_is_refused_to_others_and_free_to_itself(bench: SmallBench, elsewhere: Any) -> None:
+    key = f"demo/hli/unit/{UNIT}/command_w"
+    assert ask(bench, elsewhere, plain_put, key, b"\x01", "zenoh/bytes", "first") == "demo/hli/image"
+    for other in (None, "second"):
+        record = ask(bench, elsewhere, plain_put, key, b"\x00", "zenoh/bytes", other)
+        assert record["reason"] == "the unit belongs to PLC 'first'"
+    assert ask(bench, elsewhere, plain_put, key, b"\x00", "zenoh/bytes", "first") == "demo/hli/image"
+
+
+# --- PLCs
+
+
+def test_lockstep_exchanges_2000_cycles_in_order(bench: SmallBench, elsewhere: Any) -> None:
+    plc = elsewhere(lockstep_plc, bench.endpoint, 2000)
+    bench.serve(lambda: bench.server.attached == ["lock"])
+    for _ in range(2000):
+        commands = bench.exchange("lock", probe=struct.pack("<8xQ", bench.cycle + 1))
+        assert commands.cycle == bench.cycle
+        assert [write.value for write in commands.writes] == [bench.cycle]
+    assert plc.result() == []
+    assert bench.server.late == {}
+    assert bench.server.refused == 0
+
+
+def test_answers_to_older_cycles_count_late_and_to_future_ones_not_at_all(
+    bench: SmallBench, elsewhere: Any
+) -> None:
+    element = LAYOUT.element(f"{TIME}/command_w").id
+    messages = [struct.pack("<QHq", cycle, element, cycle) for cycle in (1, 9, 3)]
+    future = elsewhere(send_commands, bench.endpoint, "p", messages, attach=True)
+    bench.serve(lambda: any(isinstance(request, State) for request in bench.seen))
+    commands = bench.server.commands("p", 3, 0)
+    future.result()
+    assert commands is not None
+    assert [write.value for write in commands.writes] == [1, 3]
+    assert bench.server.late == {"p": 1}
+    assert bench.server.refused == 1
+
+
+def test_paced_commands_are_all_that_came_with_the_newest_cycle(bench: SmallBench, elsewhere: Any) -> None:
+    element = LAYOUT.element(f"{TIME}/command_w").id
+    messages = [struct.pack("<QHq", cycle, element, cycle) for cycle in (1, 2)]
+    future = elsewhere(send_commands, bench.endpoint, "p", messages, attach=True)
+    bench.serve(lambda: any(isinstance(request, State) for request in bench.seen))
+    commands = bench.server.latest_commands("p")
+    future.result()
+    assert commands is not None
+    assert (commands.cycle, [write.value for write in commands.writes]) == (2, [1, 2])
+    assert bench.server.latest_commands("p") is None
+
+
+def test_malformed_commands_are_refused_and_still_answer_their_cycle(
+    bench: SmallBench, elsewhere: Any
+) -> None:
+    future = elsewhere(
+        send_commands, bench.endpoint, "p", [b"\x01", struct.pack("<QH", 4, 60000)], attach=True
+    )
+    bench.serve(lambda: any(isinstance(request, State) for request in bench.seen))
+    assert bench.server.commands("p", 4, 0) == Commands("p", 4, ())
+    future.result()
+    assert bench.server.refused == 2
+
+
+def test_a_plc_that_is_not_attached_is_told_so(bench: SmallBench, elsewhere: Any) -> None:
+    future = elsewhere(send_commands, bench.endpoint, "stranger", [struct.pack("<Q", 1)] * 3, attach=False)
+    bench.serve(future.done)
+    assert future.result() == "detached"
+    assert bench.server.refused == 1
+
+
+@pytest.mark.parametrize("question", ['{"period_us": 0}', "{}", "[]", "now", '{"period_us": "x"}'])
+def test_an_attach_that_makes_no_sense_is_refused(bench: SmallBench, elsewhere: Any, question: str) -> None:
+    ((_, reason, _),) = ask(bench, elsewhere, plain_get, "demo/plc/p/attach", question.encode())
+    assert b"expected" in reason
+    assert bench.server.attached == []
+
+
+@pytest.fixture
+def processes() -> Iterator[list["subprocess.Popen[bytes]"]]:
+    """Processes started in a test; those still there at its end are killed."""
+    started: list[subprocess.Popen[bytes]] = []
+    yield started
+    for process in started:
+        process.kill()
+        process.wait()
+
+
+def start_script(bench: SmallBench, processes: Any, name: str = "", script: Path | None = None) -> Any:
+    path = script or loading.data_file("plc_scripts", "probing.py")
+    process = plc_process.start(path, bench.endpoint, name)
+    processes.append(process)
+    bench.serve(lambda: (name or path.stem) in bench.server.attached)
+    return process
+
+
+@pytest.mark.req("M-182", "M-239")
+def test_a_script_in_a_process_forwards_the_probe(bench: SmallBench, processes: Any) -> None:
+    start_script(bench, processes)
+    bench.exchange("probing")
+    assert bench.value(f"{UNIT}/enable_w") is True
+    assert bench.value(f"{UNIT}/command_w") is False
+    assert len(bench.exchange("probing").writes) == 0
+    bench.exchange("probing", probe=struct.pack("<?7xQ", True, 123_456))
+    assert bench.value(f"{UNIT}/command_w") is True
+    assert bench.value(f"{TIME}/command_w") == 123_456
+    assert bench.value(f"{TIME}/enable_w") is True
+    assert bench.server.refused == 0
+
+
+def test_a_second_plc_is_refused_the_units_of_the_first(bench: SmallBench, processes: Any) -> None:
+    start_script(bench, processes, "first")
+    bench.exchange("first")
+    start_script(bench, processes, "second")
+    bench.publish()
+    commands = bench.server.commands("second", bench.cycle, PATIENCE_S)
+    assert commands is not None
+    refusals = bench.access.apply(commands)
+    assert len(refusals) == len(commands.writes) > 0
+    assert {refusal.reason for refusal in refusals} == {"the unit belongs to PLC 'first'"}
+
+
+def test_the_name_of_an_attached_plc_is_taken(bench: SmallBench, processes: Any) -> None:
+    start_script(bench, processes, "same")
+    process = plc_process.start(loading.data_file("plc_scripts", "probing.py"), bench.endpoint, "same")
+    processes.append(process)
+    bench.serve(lambda: process.poll() is not None)
+    assert process.returncode == 2
+
+
+def test_a_killed_plc_departs_and_its_units_fall_back(bench: SmallBench, processes: Any) -> None:
+    process = start_script(bench, processes)
+    bench.exchange("probing")
+    process.kill()
+    bench.publish()
+    assert bench.server.commands("probing", bench.cycle, PATIENCE_S) is None
+    assert bench.server.departed() == ["probing"]
+    assert bench.server.attached == []
+    bench.access.leave("probing")
+    assert bench.value(f"{UNIT}/enable_w") is False
+    assert bench.server.departed() == []
+
+
+def test_a_frozen_plc_departs_and_attaches_anew_when_it_wakes(bench: SmallBench, processes: Any) -> None:
+    process = start_script(bench, processes)
+    first = bench.exchange("probing")
+    process.send_signal(signal.SIGSTOP)
+    assert bench.server.wait_request(PATIENCE_S) == []
+    assert bench.server.departed() == ["probing"]
+    bench.access.leave("probing")
+    process.send_signal(signal.SIGCONT)
+
+    def back() -> bool:
+        bench.publish()
+        return bench.server.attached == ["probing"]
+
+    bench.serve(back)
+    assert bench.exchange("probing").writes == first.writes
+    assert bench.value(f"{UNIT}/enable_w") is True
+
+
+def test_a_script_that_fails_ends_with_its_line(
+    bench: SmallBench, processes: Any, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    script = tmp_path / "broken.py"
+    script.write_text("class Plc:\n    period_us = 1000\n    def cycle(self, hli, io):\n        hli.ax[99]\n")
+    process = start_script(bench, processes, script=script)
+    bench.publish()
+    assert bench.server.commands("broken", bench.cycle, PATIENCE_S) is None
+    assert bench.server.departed() == ["broken"]
+    assert process.wait(PATIENCE_S) == 2
+    assert f"{script}:4: KeyError" in capfd.readouterr().err
+
+
+def test_a_plc_ends_with_the_bench(bench: SmallBench, processes: Any) -> None:
+    process = start_script(bench, processes)
+    bench.server.close()
+    assert process.wait(PATIENCE_S) == 0
+
+
+def test_a_plc_of_zenoh_and_struct_alone_forwards_the_probe(bench: SmallBench, processes: Any) -> None:
+    path = Path(__file__).with_name("plain_zenoh_plc.py")
+    processes.append(subprocess.Popen([sys.executable, str(path), bench.endpoint, "demo", "3"]))
+    bench.serve(lambda: bench.server.attached == ["plain"])
+    bench.exchange("plain")
+    bench.exchange("plain", probe=struct.pack("<?7xQ", True, 77))
+    assert (bench.value(f"{UNIT}/command_w"), bench.value(f"{TIME}/command_w")) == (True, 77)
+    assert (bench.value(f"{UNIT}/enable_w"), bench.value(f"{TIME}/enable_w")) == (True, True)
+    assert bench.server.refused == 0
+    bench.server.close()
+    assert processes[0].wait(PATIENCE_S) == 0
+
+
+def test_image_subscribers_are_seen(bench: SmallBench, processes: Any) -> None:
+    assert not bench.server.has_image_subscribers()
+    start_script(bench, processes)
+    assert bench.server.has_image_subscribers()
+
+
+def watch_two(endpoint: str) -> list[Any]:
+    with HliClient(endpoint) as client:
+        values = []
+        for value in client.watch(f"{TIME}/command_w"):
+            values.append(value)
+            client.set(f"{TIME}/command_w", str(value + 5))
+            if len(values) == 3:
+                return values
+    return values
+
+
+def test_watching_an_element_yields_every_change(bench: SmallBench, elsewhere: Any) -> None:
+    assert ask(bench, elsewhere, watch_two) == [0, 5, 10]

@@ -16,7 +16,7 @@ from hli_bench.kernel.decoder.variables import Variables, needs_flush
 from hli_bench.kernel.decoder.words import WordReader
 from hli_bench.manual.errors import decoder as errors
 
-_PLAIN_WORDS = re.compile(r"([A-Za-z])([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))|([^ \t\r\n])")
+_PLAIN_WORDS = re.compile(r"([A-Za-z])([+-]?(?:[0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]{1,20}))|([^ \t\r\n])")
 _HASH = re.compile(r"#\s*([A-Z]+)", re.IGNORECASE)
 _SUBROUTINE = re.compile(r"%L\s", re.IGNORECASE)
 _RAPID: Final = {"0": True, "00": True, "1": False, "01": False}
@@ -161,7 +161,7 @@ class Decoder:
 
     def _program_name(self, scanner: Scanner) -> None:
         if scanner.match(_SUBROUTINE):
-            raise scanner.not_emulated("%L: subroutines are not built")
+            raise scanner.not_emulated("%L: subroutines not built")
         if self._named:
             raise CncStop(errors.PERCENT_IN_MAIN_PROGRAM, scanner.block.source)
         self._named = True

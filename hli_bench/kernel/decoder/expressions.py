@@ -12,12 +12,17 @@ MAX_DEPTH: Final = 32
 
 _NUMBER = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
 _WORD = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
-_OR = re.compile(r"\|\||OR\b", re.IGNORECASE)
-_AND = re.compile(r"&&|AND\b", re.IGNORECASE)
-_COMPARE = re.compile(r"==|!=|<>|<=|>=|<|>")
-_COMPARE_IN_CONDITION = re.compile(r"==|!=|<>|<=|>=|<|>|=")
-_ADD = re.compile(r"[+-]")
-_MULTIPLY = re.compile(r"\*(?!\*)|/|MOD\b", re.IGNORECASE)
+_OPERATOR = re.compile(
+    r"(?P<compare>==|!=|<>|<=|>=|<|>|=)|(?P<add>[+-])|(?P<multiply>\*(?!\*)|/|MOD\b)"
+    r"|(?P<either>\|\||OR\b)|(?P<both>&&|AND\b)",
+    re.IGNORECASE,
+)
+_SIGN = re.compile(r"[+-]")
+_LITERAL = re.compile(
+    r"[+-]?(?:[0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]{1,20})(?=\s*(?:$|[\],]|[A-Z](?![A-Z])))", re.IGNORECASE
+)
+"""A number that no operator follows: by far the most frequent expression."""
+
 _MEMORY = re.compile(r"V\.|PP[0-9\[]|P[0-9\[]|P{2,}[0-9]", re.IGNORECASE)
 _CONSTANTS: Final = {"TRUE": 1.0, "FALSE": 0.0, "PI": math.pi}
 
@@ -68,16 +73,23 @@ FUNCTIONS: Final[dict[str, Callable[[float], float]]] = {
 }
 """Functions of one argument in '[ ]'; ROUND takes halves away from zero (decided here)."""
 
-_COMPARISONS: Final[dict[str, Callable[[float, float], bool]]] = {
-    "==": lambda a, b: a == b,
-    "=": lambda a, b: a == b,
-    "!=": lambda a, b: a != b,
-    "<>": lambda a, b: a != b,
-    "<": lambda a, b: a < b,
-    ">": lambda a, b: a > b,
-    "<=": lambda a, b: a <= b,
-    ">=": lambda a, b: a >= b,
+_OPERATORS: Final[dict[str, Callable[[float, float], float]]] = {
+    "||": lambda a, b: float(is_true(a) or is_true(b)),
+    "&&": lambda a, b: float(is_true(a) and is_true(b)),
+    "==": lambda a, b: float(a == b),
+    "!=": lambda a, b: float(a != b),
+    "<": lambda a, b: float(a < b),
+    ">": lambda a, b: float(a > b),
+    "<=": lambda a, b: float(a <= b),
+    ">=": lambda a, b: float(a >= b),
+    "+": lambda a, b: a + b,
+    "-": lambda a, b: a - b,
+    "*": lambda a, b: a * b,
+    "/": lambda a, b: a / b,
+    "MOD": math.fmod,
 }
+_SAME_AS: Final = {"OR": "||", "AND": "&&", "=": "==", "<>": "!="}
+_BINDS: Final = {"either": 1, "both": 2, "compare": 3, "add": 4, "multiply": 5}
 
 
 def is_true(value: float) -> bool:
@@ -88,9 +100,11 @@ def is_true(value: float) -> bool:
 def evaluate(scanner: Scanner, memory: Memory, *, condition: bool = False) -> float:
     """Take an expression and return its value; in a condition '=' compares."""
     start = scanner.pos
+    if literal := scanner.match(_LITERAL):
+        return float(literal.group())
     _deeper(scanner)
     try:
-        value = float(_Evaluation(scanner, memory, condition=condition).disjunction())
+        value = float(_Evaluation(scanner, memory, condition=condition).binary(1))
     except (ZeroDivisionError, OverflowError, ValueError) as problem:
         raise scanner.error(f"expression cannot be computed: {problem}", start) from None
     scanner.depth -= 1
@@ -106,57 +120,35 @@ def _deeper(scanner: Scanner) -> None:
 
 
 class _Evaluation:
-    """One run over an expression, from the loosest binding operator down."""
+    """One run over an expression."""
 
-    __slots__ = ("_compare", "_memory", "_scanner")
+    __slots__ = ("_condition", "_memory", "_scanner")
 
     def __init__(self, scanner: Scanner, memory: Memory, *, condition: bool) -> None:
         self._scanner = scanner
         self._memory = memory
-        self._compare = _COMPARE_IN_CONDITION if condition else _COMPARE
+        self._condition = condition
 
-    def disjunction(self) -> float:
-        value = self._conjunction()
-        while self._scanner.match(_OR):
-            right = self._conjunction()
-            value = float(is_true(value) or is_true(right))
-        return value
-
-    def _conjunction(self) -> float:
-        value = self._comparison()
-        while self._scanner.match(_AND):
-            right = self._comparison()
-            value = float(is_true(value) and is_true(right))
-        return value
-
-    def _comparison(self) -> float:
-        value = self._sum()
-        while found := self._scanner.match(self._compare):
-            value = float(_COMPARISONS[found.group()](value, self._sum()))
-        return value
-
-    def _sum(self) -> float:
-        value = self._product()
-        while found := self._scanner.match(_ADD):
-            right = self._product()
-            value = value + right if found.group() == "+" else value - right
-        return value
-
-    def _product(self) -> float:
+    def binary(self, least: int) -> float:
+        """Take operands joined by operators that bind at least so tightly."""
+        scanner = self._scanner
         value = self._signed()
-        while found := self._scanner.match(_MULTIPLY):
-            right = self._signed()
-            if found.group() == "*":
-                value *= right
-            elif found.group() == "/":
-                value /= right
-            else:
-                value = math.fmod(value, right)
-        return value
+        while True:
+            before = scanner.pos
+            found = scanner.match(_OPERATOR)
+            if found is None:
+                return value
+            binds = _BINDS[found.lastgroup or ""]
+            word = found.group().upper()
+            if binds < least or (word == "=" and not self._condition):
+                scanner.pos = before
+                return value
+            right = self.binary(binds + 1)
+            value = _OPERATORS[_SAME_AS.get(word, word)](value, right)
 
     def _signed(self) -> float:
         negative = False
-        while found := self._scanner.match(_ADD):
+        while found := self._scanner.match(_SIGN):
             negative ^= found.group() == "-"
         value = self._power()
         return -value if negative else value
@@ -188,7 +180,7 @@ class _Evaluation:
     def _bracket(self) -> float:
         _deeper(self._scanner)
         self._scanner.expect("[")
-        value = self.disjunction()
+        value = self.binary(1)
         self._scanner.expect("]")
         self._scanner.depth -= 1
         return value

@@ -95,9 +95,9 @@ class Scanner:
 
     def skip(self) -> None:
         """Move over blanks."""
-        found = _BLANKS.match(self.text, self.pos)
-        if found is not None:
-            self.pos = found.end()
+        if self.text[self.pos : self.pos + 1].isspace():
+            found = _BLANKS.match(self.text, self.pos)
+            self.pos = found.end() if found else self.pos
 
     @property
     def start(self) -> int:

@@ -37,9 +37,7 @@ IN_FORCE: Final = frozenset((17, 40, 71, 94))
 
 NOT_BUILT: Final = {
     "G2": "circles",
-    "G02": "circles",
     "G3": "circles",
-    "G03": "circles",
     "G18": "other planes",
     "G19": "other planes",
     "G20": "mirroring",
@@ -72,9 +70,7 @@ NOT_BUILT: Final = {
     "G261": "smoothing",
     "G310": "measuring with a jump",
     "M0": "stopping for the operator",
-    "M00": "stopping for the operator",
     "M1": "optional stop",
-    "M01": "optional stop",
     "M17": "subroutines",
     "M29": "subroutines",
     "L": "subroutines",
@@ -88,7 +84,7 @@ NOT_BUILT: Final = {
     "R": "circles",
     "E": "feed at the end of a block",
 }
-"""Words of the dialect that are not built, with what is missing."""
+"""Words of the dialect that not built, with what is missing."""
 
 
 @dataclass(slots=True)
@@ -179,10 +175,10 @@ class WordReader:
     def _axis_word(self, scanner: Scanner, found: re.Match[str]) -> tuple[AxisIndex, float]:
         axis = self._context.by_name[found.group(1).upper()]
         if axis.kind == "S":
-            raise scanner.not_emulated(f"{axis.name}: spindles are not built", found.start())
+            raise scanner.not_emulated(f"{axis.name}: spindles not built", found.start())
         if keyword := _AXIS_KEYWORD.match(scanner.text, scanner.pos):
             raise scanner.not_emulated(
-                f"{axis.name}[{keyword.group(1).upper()} ...]: axis commands are not built", found.start()
+                f"{axis.name}[{keyword.group(1).upper()} ...]: axis commands not built", found.start()
             )
         scanner.accept("=")
         if scanner.at_end():
@@ -203,7 +199,7 @@ class WordReader:
             name = f"M{int(found.group(1)[:9])}"
             if name not in ("M2", "M30"):
                 what = NOT_BUILT.get(name, "technology functions")
-                raise scanner.not_emulated(f"{found.group().upper()}: {what} are not built", start)
+                raise scanner.not_emulated(f"{found.group().upper()}: {what} not built", start)
             words.end = True
             return
         raise self._unknown(scanner, start)
@@ -214,7 +210,7 @@ class WordReader:
             return scanner.error(f"expected a word such as G01, F1000 or X10, found {scanner.found()}", start)
         word = found.group().upper()
         if word[0] in NOT_BUILT and (len(word) == 1 or word[1].isdigit()):
-            return scanner.not_emulated(f"{word}: {NOT_BUILT[word[0]]} are not built", start)
+            return scanner.not_emulated(f"{word}: {NOT_BUILT[word[0]]} not built", start)
         axes = ", ".join(self._context.by_name)
         if word[0] == "N" and word[1:].isdigit():
             return scanner.error(f"expected the block number {word} at the beginning of its block", start)

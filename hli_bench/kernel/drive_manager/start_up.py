@@ -54,8 +54,6 @@ class Drive:
 def _configure(drive: Drive) -> None:
     row = drive.core.row(drive.axis)
     row["mode"] = FOLLOW
-    cycle_us = drive.core.setup.cycle_ns // 1000
-    drive.order(0x1006, 0, struct.pack("<I", cycle_us))
     drive.order(0x1017, 0, struct.pack("<H", HEARTBEAT_MS))
     drive.order(0x6060, 0, struct.pack("<b", CYCLIC_SYNCHRONOUS_POSITION))
 

@@ -44,4 +44,4 @@ KNOWN: Final = {
     "VAR": "declaration of variables",
     "WAIT": "waiting for independent axes",
 }
-"""Commands of the dialect that are not built, with what is missing."""
+"""Commands of the dialect that not built, with what is missing."""

@@ -37,7 +37,7 @@ def run(context: Context, memory: Variables, scanner: Scanner) -> Steps:
 
 def _values(memory: Variables, scanner: Scanner) -> list[float]:
     if scanner.peek() != "[":
-        raise scanner.not_emulated("#CS ON without [v1,v2,v3,phi1,phi2,phi3]: stored systems are not built")
+        raise scanner.not_emulated("#CS ON without [v1,v2,v3,phi1,phi2,phi3]: stored systems not built")
     scanner.expect("[")
     values: list[float] = []
     while True:
@@ -48,5 +48,5 @@ def _values(memory: Variables, scanner: Scanner) -> list[float]:
     if len(values) > 6:
         raise scanner.error(f"expected at most 6 values in #CS ON[...], found {len(values)}")
     if scanner.peek() == "[":
-        raise scanner.not_emulated("#CS ON[id][...]: stored systems are not built")
+        raise scanner.not_emulated("#CS ON[id][...]: stored systems not built")
     return values + [0.0] * (6 - len(values))

@@ -41,7 +41,7 @@ def _mode(scanner: Scanner) -> bool:
     while found := scanner.match(_WORD):
         word = found.group().upper()
         if word in _NOT_BUILT:
-            raise scanner.not_emulated(f"#MSG {word}: acknowledged texts and receivers are not built")
+            raise scanner.not_emulated(f"#MSG {word}: acknowledged texts and receivers not built")
         if word not in ("SYN", "ISG_DIAG_BED"):
             raise scanner.error(f"expected SYN or '[' after #MSG, found '{word}'", found.start())
         synchronous |= word == "SYN"

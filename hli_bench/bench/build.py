@@ -1,0 +1,60 @@
+"""A machine's configuration becomes nodes: kernel, drives, plant, terminals."""
+
+from typing import Any
+
+from hli_bench.base.loading import module
+from hli_bench.bench.config import MachineConfig
+from hli_bench.kernel.cycle import Kernel
+from hli_bench.kernel.setup import AxisSetup, KernelSetup
+from hli_bench.plant import build as plant
+from hli_bench.runtime.machine_side import DriveNode, MachineSide
+from hli_bench.terminals.terminal import Terminal, type_of
+
+
+def kernel(config: MachineConfig) -> Kernel:
+    """Return the CNC of a machine."""
+    axes = [
+        AxisSetup(
+            index=axis.index,
+            number=axis.number,
+            node=axis.node_id,
+            name=axis.name,
+            kind=axis.kind,
+            params=axis.params,
+        )
+        for axis in config.axes
+    ]
+    return Kernel(
+        KernelSetup(
+            axes=axes, channel=config.channel, cycle_ns=config.cycle_ns, dc_epoch_ns=config.dc_epoch_ns
+        )
+    )
+
+
+def machine_side(config: MachineConfig) -> MachineSide:
+    """Return the drives, the plant and the terminals of a machine."""
+    built = plant.build(config.plant, config.channels())
+    drives: list[DriveNode] = []
+    for axis in config.axes:
+        model: Any = module(axis.drive)
+        drives.append(model.create(axis.name, axis.node_id, built.rows.servo[axis.index], {}))
+    return MachineSide(
+        rows=built.rows,
+        pending=built.pending,
+        drives=drives,
+        terminals=terminals(config, built.rows.channel),
+        signals=built.signals.names,
+        cycle_ns=config.cycle_ns,
+        sub_steps=config.sub_steps,
+        dc_epoch_ns=config.dc_epoch_ns,
+    )
+
+
+def terminals(config: MachineConfig, channels: Any) -> list[Terminal]:
+    """Return the terminals on their rows."""
+    built: list[Terminal] = []
+    first = 0
+    for settings in config.terminals:
+        built.append(Terminal(settings, channels, first, config.cycle_ns))
+        first += len(type_of(settings).channels(settings))
+    return built

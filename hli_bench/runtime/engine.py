@@ -1,0 +1,276 @@
+"""The loop that steps the bench: quiet cycles in one call, the others one by one through frames.
+
+A cycle in which only the standard telegrams pass needs no frames: the compiled stride exchanges their numbers.
+Every other cycle hands real frames to the drives and takes real frames from them. Both give the same bits.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol
+
+from hli_bench.base.time import Ns
+from hli_bench.kernel.cycle import Kernel
+from hli_bench.kernel.records import Emitted
+from hli_bench.laws import stride as law
+from hli_bench.laws.rows import LOG_CYCLES, MachineRows
+from hli_bench.protocols.hli.access import Access, Refusal
+from hli_bench.runtime.machine_side import SYNC, MachineSide
+from hli_bench.wire.can import CanFrame
+from hli_bench.wire.hli import Commands
+from hli_bench.wire.signals import Edge
+
+
+class Link(Protocol):
+    """How the CNC reaches the machine: in this process by rows, or over a bus."""
+
+    rows: MachineRows
+    sub_steps: int
+
+    def power_on(self) -> list[CanFrame]:
+        """Boot all nodes."""
+
+    def advance(self, cycle: int) -> None:
+        """Move the machine to the SYNC of `cycle`."""
+
+    def telegrams(self, cycle: int, inbox: Sequence[CanFrame]) -> list[CanFrame]:
+        """Exchange the frames of a SYNC."""
+
+    def quiet(self, cycle: int) -> int:
+        """Return how many cycles may be strided over."""
+
+    def images(self, cycle: int) -> Mapping[str, bytes]:
+        """Return the process images by terminal."""
+
+    def image_horizon(self, cycle: int) -> int:
+        """Return how many cycles may pass before the images have to be looked at."""
+
+    def take_edges(self) -> list[Edge]:
+        """Return the edges of all signals since the last call."""
+
+
+class PlcPort(Protocol):
+    """An attached PLC task, in this process or another."""
+
+    name: str
+    period_cycles: int
+
+    def tick(self, cycle: int, dc_ns: Ns, image: bytearray, io: Mapping[str, bytes]) -> Commands | None:
+        """Run once on the images of `cycle`; None when there is no answer (the PLC is gone)."""
+
+
+class Observer(Protocol):
+    """Whoever records: is told what happened, cycle by cycle or in blocks."""
+
+    def cycles(self, first: int, count: int) -> None:
+        """Cycles `first` .. `first + count - 1` stand in the kernel's log ring."""
+
+    def frames(self, cycle: int, frames: Sequence[CanFrame]) -> None:
+        """Frames of a cycle beside its telegrams."""
+
+    def edges(self, edges: Sequence[Edge]) -> None:
+        """Signals changed."""
+
+    def emitted(self, cycle: int, records: Sequence[Emitted]) -> None:
+        """The kernel emitted something."""
+
+    def commands(self, commands: Commands) -> None:
+        """A PLC wrote."""
+
+    def refused(self, cycle: int, refusals: Sequence[Refusal]) -> None:
+        """Writes were refused."""
+
+
+class LocalLink:
+    """The machine in this process."""
+
+    def __init__(self, side: MachineSide) -> None:
+        self._side = side
+        self.rows = side.rows
+        self.sub_steps = side.sub_steps
+        self.power_on = side.power_on
+        self.advance = side.advance
+        self.telegrams = side.telegrams
+        self.quiet = side.quiet
+        self.image_horizon = side.image_horizon
+        self.take_edges = side.take_edges
+
+    def images(self, cycle: int) -> Mapping[str, bytes]:
+        """Return the process images by terminal."""
+        return {image.terminal: image.data for image in self._side.images(cycle)}
+
+    @property
+    def pending(self) -> object:
+        """Coming signal changes (for the stride)."""
+        return self._side.pending
+
+
+class Engine:
+    """Owns the cycle count. `cycle` is the last completed cycle."""
+
+    def __init__(self, kernel: Kernel, link: Link, pending: object) -> None:
+        self.kernel = kernel
+        self.link = link
+        self.cycle = 0
+        self.access = Access(kernel.image)
+        self.plcs: list[PlcPort] = []
+        self.observers: list[Observer] = []
+        self.lost: list[str] = []
+        self._pending = pending
+        self._orders: list[CanFrame] = []
+        self._decide = True
+        self._cycle_ns = kernel.setup.cycle_ns
+        self._words: bytes = b""
+
+    def power_on(self) -> None:
+        """Boot the drives and begin the start-up of the kernel."""
+        frames = self.link.power_on()
+        self.kernel.take_frames(frames)
+        self._tell_frames(0, frames)
+        self.kernel.begin_start_up()
+
+    def run(self, until: Callable[[], bool], limit: int) -> bool:
+        """Step until a condition on the kernel holds or cycle `limit` is done; tell whether it held."""
+        while not until():
+            if self.cycle >= limit:
+                return False
+            self.step(limit)
+        return True
+
+    def step(self, limit: int) -> None:
+        """Run a stretch: to the next decision, PLC tick or `limit`, whichever comes first."""
+        first = self.cycle + 1
+        room = self._stretch(first, limit)
+        if room > 0:
+            done, where = self._stride(first, room, law.MACHINE)
+        else:
+            self.link.advance(first)
+            done, where = 0, law.SENSE
+        cycle = first + done
+        if where == law.SENSE:
+            self._telegrams(cycle)
+            _, where = self._stride(cycle, 1, law.SENSE)
+            if where == law.MACHINE:
+                done += 1
+        if where == law.ACT:
+            self._think(cycle)
+            self._stride(cycle, 1, law.ACT)
+            done += 1
+        self._complete(first, done)
+
+    def wake(self) -> None:
+        """Let the kernel decide in the next cycle: something has been put from outside."""
+        self._decide = True
+
+    def apply(self, commands: Commands) -> None:
+        """Let a PLC's writes count from the next cycle on."""
+        if not commands.writes:
+            return
+        refusals = self.access.apply(commands)
+        for observer in self.observers:
+            observer.commands(commands)
+            if refusals:
+                observer.refused(self.cycle, refusals)
+        self._decide = True
+
+    def _stretch(self, first: int, limit: int) -> int:
+        """Return how many cycles from `first` on may be strided over, 0 when frames have to pass."""
+        if self._orders or self._word_bytes() != self._words:
+            return 0
+        room = min(self.link.quiet(first), limit - self.cycle, LOG_CYCLES)
+        for plc in self.plcs:
+            room = min(room, plc.period_cycles - self.cycle % plc.period_cycles)
+        return min(room, self.link.image_horizon(first)) if room > 0 else 0
+
+    def _word_bytes(self) -> bytes:
+        """Control and latch control words as sent: a cycle in which they change is not quiet."""
+        axis = self.kernel.rows.axis
+        words: bytes = axis["controlword"].tobytes() + axis["probe_function"].tobytes()
+        return words
+
+    def _telegrams(self, cycle: int) -> None:
+        """Pass real frames at the SYNC of a cycle."""
+        self._words = self._word_bytes()
+        orders, self._orders = self._orders, []
+        self.kernel.begin_cycle(cycle)
+        frames = self.link.telegrams(cycle, [*self.kernel.cyclic_frames(), *orders])
+        ids = self.kernel.telegram_ids
+        self._tell_frames(cycle, [frame for frame in frames if frame.cob_id not in ids])
+        if self.kernel.take_frames(frames):
+            self._decide = True
+
+    def _stride(self, cycle: int, cycles: int, phase: int) -> tuple[int, int]:
+        kernel, machine = self.kernel.rows, self.link.rows
+        stop, self._decide = (self._decide, False) if phase != law.ACT else (False, self._decide)
+        result: tuple[int, int] = law.stride(
+            kernel.axis,
+            kernel.path,
+            kernel.segment,
+            kernel.watch,
+            kernel.history,
+            kernel.log,
+            machine.servo,
+            machine.switch,
+            machine.signal,
+            machine.channel,
+            machine.edge,
+            machine.edges,
+            self._pending,
+            cycle,
+            cycles,
+            phase,
+            stop,
+            self._cycle_ns,
+            self.link.sub_steps,
+            self.kernel.setup.dc_epoch_ns,
+        )
+        if stop and result[1] == law.SENSE:
+            self._decide = True
+        return result
+
+    def _think(self, cycle: int) -> None:
+        """Let the kernel decide between sense and act."""
+        self.kernel.begin_cycle(cycle)
+        self.kernel.decide()
+        orders = self.kernel.take_orders()
+        self._orders += orders
+        self._tell_frames(cycle, orders)
+        emitted = self.kernel.take_emitted()
+        if emitted:
+            for observer in self.observers:
+                observer.emitted(cycle, emitted)
+
+    def _complete(self, first: int, count: int) -> None:
+        """Cycles are done: tell the observers, run the PLC tasks that are due."""
+        self.cycle = first + count - 1
+        edges = self.link.take_edges()
+        for observer in self.observers:
+            observer.cycles(first, count)
+            if edges:
+                observer.edges(edges)
+        due = [plc for plc in self.plcs if self.cycle % plc.period_cycles == 0]
+        if not due:
+            return
+        dc_ns = Ns(self.kernel.setup.dc_epoch_ns + self.cycle * self._cycle_ns)
+        self.kernel.publish()
+        io = self.link.images(self.cycle)
+        answers = [(plc, plc.tick(self.cycle, dc_ns, self.kernel.image.data, io)) for plc in due]
+        for plc, commands in answers:
+            if commands is None:
+                self._lose(plc)
+            else:
+                self.apply(commands)
+
+    def _lose(self, plc: PlcPort) -> None:
+        """A PLC has gone: its units fall back, the CNC reacts as to a PLC stop."""
+        self.plcs.remove(plc)
+        self.lost.append(plc.name)
+        self.access.leave(plc.name)
+        self.kernel.plc_lost(plc.name)
+        self._decide = True
+
+    def _tell_frames(self, cycle: int, frames: Sequence[CanFrame]) -> None:
+        if frames:
+            for observer in self.observers:
+                observer.frames(cycle, frames)
+
+
+__all__ = ["SYNC", "Engine", "Link", "LocalLink", "Observer", "PlcPort"]

@@ -1,0 +1,144 @@
+"""Plant, drives and terminals as one node group: what stands on the other end of the bus."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hli_bench.base.time import Ns
+from hli_bench.laws.machine import advance_machine
+from hli_bench.laws.rows import MachineRows
+from hli_bench.wire.can import CanFrame
+from hli_bench.wire.images import ProcessImage
+from hli_bench.wire.signals import Edge
+
+SYNC: Final = CanFrame(0x80)
+
+
+class DriveNode(Protocol):
+    """What the bench asks of a drive model."""
+
+    @property
+    def node_id(self) -> int:
+        """CANopen node id."""
+
+    def power_on(self) -> list[CanFrame]:
+        """Boot."""
+
+    def on_frame(self, frame: CanFrame, now: Ns) -> list[CanFrame]:
+        """Take one frame, SYNC included."""
+
+    def tick(self, now: Ns) -> list[CanFrame]:
+        """Return what is due by time or event."""
+
+    def next_due(self, now: Ns) -> Ns | None:
+        """Return when `tick` has something to do at the latest."""
+
+    def cyclic_signature(self) -> bool:
+        """Tell whether numbers may pass between rows without frames."""
+
+    @property
+    def statusword(self) -> int:
+        """Object 0x6041."""
+
+
+class TerminalNode(Protocol):
+    """What the bench asks of a terminal."""
+
+    @property
+    def due_ns(self) -> Ns:
+        """Instant of the next refresh of its image."""
+
+    def step(self, now_ns: Ns) -> ProcessImage:
+        """Return the process image at an instant."""
+
+
+class MachineSide:
+    """Steps everything that is not the CNC. `pending` holds coming changes of signals (contact bounce)."""
+
+    def __init__(
+        self,
+        rows: MachineRows,
+        pending: NDArray[np.int64],
+        drives: Sequence[DriveNode],
+        terminals: Sequence[TerminalNode],
+        signals: Sequence[str],
+        cycle_ns: int,
+        sub_steps: int,
+        dc_epoch_ns: int,
+    ) -> None:
+        self.rows = rows
+        self.pending = pending
+        self.drives = drives
+        self.terminals = terminals
+        self.cycle_ns = cycle_ns
+        self.sub_steps = sub_steps
+        self.dc_epoch_ns = dc_epoch_ns
+        self._signals = signals
+        self._horizon = 0
+
+    def power_on(self) -> list[CanFrame]:
+        """Boot all nodes: their boot-up messages."""
+        return [frame for drive in self.drives for frame in drive.power_on()]
+
+    def advance(self, cycle: int) -> None:
+        """Move the machine to the SYNC of `cycle`."""
+        rows = self.rows
+        advance_machine(
+            rows.servo,
+            rows.switch,
+            rows.signal,
+            rows.channel,
+            rows.edge,
+            rows.edges,
+            self.pending,
+            (cycle - 1) * self.cycle_ns,
+            self.cycle_ns,
+            self.sub_steps,
+            self.dc_epoch_ns,
+        )
+
+    def telegrams(self, cycle: int, inbox: Iterable[CanFrame]) -> list[CanFrame]:
+        """Hand the drives what the bus carried since the last SYNC, then this SYNC; return what they send."""
+        now = Ns(cycle * self.cycle_ns)
+        frames: list[CanFrame] = []
+        for frame in (*inbox, SYNC):
+            for drive in self.drives:
+                frames += drive.on_frame(frame, now)
+        for drive in self.drives:
+            frames += drive.tick(now)
+        self._horizon = 0
+        return sorted(frames, key=lambda frame: frame.cob_id)
+
+    def quiet(self, cycle: int) -> int:
+        """Return for how many cycles from `cycle` on no drive has anything to say but its telegrams."""
+        if cycle >= self._horizon:
+            if not all(drive.cyclic_signature() for drive in self.drives):
+                return 0
+            now = Ns((cycle - 1) * self.cycle_ns)
+            due = [at for drive in self.drives if (at := drive.next_due(now)) is not None]
+            self._horizon = min((-(-at // self.cycle_ns) for at in due), default=cycle + (1 << 40))
+        return max(self._horizon - cycle, 0)
+
+    def images(self, cycle: int) -> list[ProcessImage]:
+        """Return the process images at the SYNC of `cycle`."""
+        now = Ns(cycle * self.cycle_ns)
+        return [terminal.step(now) for terminal in self.terminals]
+
+    def image_horizon(self, cycle: int) -> int:
+        """Return how many cycles from `cycle` on may pass before a terminal with a longer period refreshes."""
+        slow = [terminal.due_ns for terminal in self.terminals if terminal.due_ns > cycle * self.cycle_ns]
+        return min((-(-due // self.cycle_ns) - cycle + 1 for due in slow), default=1 << 40)
+
+    def take_edges(self) -> list[Edge]:
+        """Return the edges of all signals since the last call, in order."""
+        count = int(self.rows.edges[0])
+        if not count:
+            return []
+        self.rows.edges[0] = 0
+        taken: Any = self.rows.edge[:count]
+        return [
+            Edge(self._signals[int(row["signal"])], Ns(int(row["at_ns"])), bool(row["level"]))
+            for row in taken
+        ]

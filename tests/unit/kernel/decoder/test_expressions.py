@@ -78,6 +78,8 @@ def test_assignment_in_a_motion_block_counts_from_there_on(decode: Any) -> None:
         ("X[SQRT[-1]]", 6, "cannot be computed"),
         ("X[LN[0]]", 6, "cannot be computed"),
         ("X[10**999]", 6, "cannot be computed"),
+        ("X" + "9" * 400, 6, "cannot be computed"),
+        ("X[" + "9" * 400 + "]", 6, "cannot be computed"),
         ("X[[-8]**0.5]", 6, "cannot be computed"),
         ("X[1+]", 9, "expected a number, a parameter or '['"),
         ("X[FOO[1]]", 7, "found 'FOO'"),

@@ -143,7 +143,7 @@ class WordReader:
                 words.functions.append(_g_number(scanner, found))
                 words.at = found.start()
             elif found := scanner.match(self._axis):
-                axis, value = self._axis_word(scanner, found)
+                axis, value = self._axis_word(scanner, found, homing=74 in words.functions)
                 if any(axis == other for other, _ in words.axes):
                     name = found.group().upper()
                     raise scanner.error(f"expected axis {name} once in a block", found.start())
@@ -172,9 +172,9 @@ class WordReader:
             raise scanner.error(f"G04: expected seconds from 0 on, found {seconds:g}", start)
         return seconds
 
-    def _axis_word(self, scanner: Scanner, found: re.Match[str]) -> tuple[AxisIndex, float]:
+    def _axis_word(self, scanner: Scanner, found: re.Match[str], *, homing: bool) -> tuple[AxisIndex, float]:
         axis = self._context.by_name[found.group(1).upper()]
-        if axis.kind == "S":
+        if axis.kind == "S" and not homing:
             raise scanner.not_emulated(f"{axis.name}: spindles not built", found.start())
         if keyword := _AXIS_KEYWORD.match(scanner.text, scanner.pos):
             raise scanner.not_emulated(

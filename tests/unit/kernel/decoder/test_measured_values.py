@@ -54,7 +54,7 @@ def test_a_second_offset_waits_for_g102(decode: Any, hit: Any) -> None:
     assert (error.number, error.axis) == (20050, "Z")
 
 
-@pytest.mark.req("M-054", "M-058", "M-074")
+@pytest.mark.req("M-054", "M-058", "M-073")
 def test_values_stay_those_of_the_run_when_offsets_change_after_it(decode: Any, hit: Any, texts: Any) -> None:
     program = "G92 Z33\n" + run("Z20") + "G92 Z1\n" + SHOW + "G01 Z50\n" + SHOW + "M30"
     assert texts(decode(program, [hit])) == ["100.00 100.00 67.00 47.00"] * 2

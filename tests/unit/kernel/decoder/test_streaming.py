@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from hli_bench.base.ids import AxisIndex
+from hli_bench.kernel.blocks import Flush, MachineState
 from hli_bench.kernel.decoder import Decoder, DecoderAxis, DecoderDefaults
 
 AXES = [DecoderAxis(AxisIndex(0), "X", 1, "T", True)]
@@ -35,8 +36,6 @@ def test_no_line_is_read_before_its_block_is_wanted() -> None:
 def test_lines_are_kept_for_a_loop_only() -> None:
     lines = ["$FOR P1 = 1, 3\n", "G91 G00 X1\n", "$ENDFOR\n", *["G90 X0\n", "X1\n"] * 10, "M30\n"]
     decoder = Decoder(lines, "loop.nc", AXES, DecoderDefaults())
-    from hli_bench.kernel.blocks import Flush, MachineState
-
     blocks = decoder.blocks()
     answer = MachineState(command={AxisIndex(0): 5.0}, actual={}, measured={}, latched={}, referenced={})
     first = next(blocks)

@@ -7,7 +7,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from hli_bench.base.errors import InputError, NotEmulated
+from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.blocks import Line, ProgramEnd, Text
+from hli_bench.kernel.decoder import DecoderAxis
 from hli_bench.kernel.records import CncError
 
 
@@ -92,7 +94,6 @@ def test_known_but_not_built(decode: Any, program: str, word: str) -> None:
         decode(program)
 
 
-@pytest.mark.req("M-012")
 def test_independent_axes_are_named_as_not_built(decode: Any) -> None:
     program = "N20 X[INDP_SYN G100 G90 POS100 FEED500] \\\n      Y[INDP_SYN G100 G90 POS100 FEED1000]"
     with pytest.raises(NotEmulated, match="INDP_SYN"):
@@ -163,9 +164,6 @@ def test_block_number_stays_as_written(decode: Any) -> None:
 
 
 def test_an_axis_name_with_a_digit_needs_equals(decode: Any) -> None:
-    from hli_bench.base.ids import AxisIndex
-    from hli_bench.kernel.decoder import DecoderAxis
-
     axes = [
         DecoderAxis(AxisIndex(0), "X", 1, "T", True),
         DecoderAxis(AxisIndex(1), "X2", 2, "T", True),
@@ -175,6 +173,7 @@ def test_an_axis_name_with_a_digit_needs_equals(decode: Any) -> None:
     assert decode("G00 X2\nM30", axes=axes)[0].target == {0: 2.0}
     with pytest.raises(NotEmulated, match="spindles"):
         decode("S100", axes=axes)
+    assert decode("G74 X1 S3\nM30", axes=axes)[0].ranks == {0: 1, 2: 3}
 
 
 @pytest.mark.req("M-106")

@@ -92,6 +92,7 @@ class Drive:
         "_row",
         "_signature_changes",
         "_signature_default",
+        "_sources",
         "_word",
         "device",
         "name",
@@ -165,10 +166,7 @@ class Drive:
             self._signature_default = self.device.pdos.signature == default
         operational = self.device.nmt.state is NmtState.OPERATIONAL
         return (
-            operational
-            and self._signature_default
-            and not self.holding
-            and self._sources() == _DEFAULT_SOURCES
+            operational and self._signature_default and not self.holding and self._sources == _DEFAULT_SOURCES
         )
 
     def encode_cycle(self, values: telegram.LoggedCycle) -> list[CanFrame]:
@@ -238,6 +236,8 @@ class Drive:
         self._destination: State | None = None
         self._deadline = Ns(0)
         values, row = self.device.values, self._row
+        first, second = (values.stored(*address) for address in objects.PROBE_SOURCES)
+        self._sources = (first, second)
         row["fault"] = 0
         row["target"] = values.stored(*objects.TARGET_POSITION)
         row["following_window"] = values.stored(*objects.FOLLOWING_WINDOW)
@@ -371,25 +371,21 @@ class Drive:
 
     def _write_probe_function(self, value: Value) -> None:
         self._probe_word = int(value)
-        self._row["probe_function"] = resolve_source(self._probe_word, self._sources())
+        self._row["probe_function"] = resolve_source(self._probe_word, self._sources)
 
     def _read_probe_function(self) -> int:
         """Return the word as written, or what came row to row since."""
         present = int(self._row["probe_function"])
-        as_written = present == resolve_source(self._probe_word, self._sources())
+        as_written = present == resolve_source(self._probe_word, self._sources)
         return self._probe_word if as_written else present
 
     def _write_source(self, slot: int, value: Value) -> None:
         """Take a source for one touch probe: its own input or the zero pulse, more is not wired."""
         if value not in _SOURCES[slot]:
             raise SdoAbort(AbortCode.RANGE)
-        first, second = self._sources()
-        sources = (int(value), second) if slot == 0 else (first, int(value))
-        self._row["probe_function"] = resolve_source(self._probe_word, sources)
-
-    def _sources(self) -> tuple[int, int]:
-        first, second = (self._option(address) for address in objects.PROBE_SOURCES)
-        return first, second
+        first, second = self._sources
+        self._sources = (int(value), second) if slot == 0 else (first, int(value))
+        self._row["probe_function"] = resolve_source(self._probe_word, self._sources)
 
     def _option(self, address: ObjectAddress) -> int:
         return self.device.values.number(*address)

@@ -115,13 +115,20 @@ TRANSITIONS: Final = (
 """
 
 
+_COMMAND_BITS: Final = _RESET | _EO | _QS | _EV | _SO
+_BY_COMMAND: Final = {
+    (row.source, word): row
+    for word in range(_COMMAND_BITS + 1)
+    for row in TRANSITIONS
+    if word & ~_COMMAND_BITS == 0 and word & row.mask == row.bits
+}
+"""The table by state and command bits, because it is asked at every SYNC."""
+
+
 def next_transition(state: State, word: int, before: int) -> Transition | None:
     """Return the transition that controlword `word`, after `before`, makes in `state`."""
-    for row in TRANSITIONS:
-        fresh = not row.edge or before & row.mask != row.bits
-        if row.source is state and word & row.mask == row.bits and fresh:
-            return row
-    return None
+    row = _BY_COMMAND.get((state, word & _COMMAND_BITS))
+    return None if row is not None and row.edge and before & row.mask == row.bits else row
 
 
 def walk(state: State, word: int, before: int) -> Iterator[Transition]:

@@ -1,6 +1,7 @@
 """Touch probe function (0x60B8) and status (0x60B9), and the function words a CNC writes."""
 
 from enum import IntEnum, IntFlag
+from typing import Final
 
 
 class ProbeFunction(IntFlag):
@@ -35,6 +36,9 @@ def touch_probe(number: int, function: ProbeFunction) -> int:
     return int(function) << 8 * (number - 1)
 
 
+_ANY_BY_60D0: Final = int(ProbeFunction.SOURCE_BY_60D0) * 0x0101
+
+
 def probe_input(number: int, *, positive: bool, drive_defined: bool = False) -> int:
     """Return the 0x60B8 that arms touch probe `number` for one edge, once.
 
@@ -55,6 +59,8 @@ def zero_pulse(number: int) -> int:
 
 def resolve_source(function: int, sources: tuple[int, int]) -> int:
     """Return the function word with `SOURCE_BY_60D0` replaced by what 0x60D0 says for each touch probe."""
+    if not function & _ANY_BY_60D0:
+        return function
     resolved = function
     for number, source in enumerate(sources, start=1):
         by_object = touch_probe(number, ProbeFunction.SOURCE_BY_60D0)

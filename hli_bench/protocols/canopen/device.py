@@ -210,11 +210,9 @@ class Device:
         if frame.remote:
             asked = [tpdo.on_remote(now) for tpdo in self._pdos.tpdos if tpdo.cob_id == frame.cob_id]
             return [answer for answer in asked if answer is not None]
-        for rpdo in self._pdos.rpdos:
-            if rpdo.valid and rpdo.cob_id == frame.cob_id:
-                self._check_length(
-                    accepted=rpdo.receive(frame.data), exact=rpdo.plan.codec.size == len(frame.data)
-                )
+        for rpdo in self._pdos.receivers(frame.cob_id):
+            accepted = rpdo.receive(frame.data)
+            self._check_length(accepted=accepted, exact=len(frame.data) == rpdo.plan.codec.size)
         return []
 
     def _check_length(self, *, accepted: bool, exact: bool) -> None:

@@ -1,6 +1,7 @@
 """The values behind an object dictionary: typed store, access rules, hooks, what is kept over a reset."""
 
 from collections.abc import Callable
+from functools import partial
 
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.datatypes import DataType, Value, pack, size_of, unpack
@@ -21,19 +22,22 @@ ALL_OBJECTS = range(0x1000, 0x10000)
 class ObjectValues:
     """Values of one node. `upload`/`download` are the bus side, `get`/`put` the device's own side."""
 
-    __slots__ = ("_defaults", "_read_hooks", "_values", "_write_hooks", "description", "node_id")
+    __slots__ = ("_defaults", "_values", "_write_hooks", "description", "getters", "node_id")
 
     def __init__(self, description: ObjectDictionary, node_id: int) -> None:
         self.description = description
         self.node_id = node_id
         self._defaults = self._factory()
         self._values = dict(self._defaults)
-        self._read_hooks: dict[tuple[int, int], ReadHook] = {}
+        self.getters: dict[tuple[int, int], ReadHook] = {
+            address: partial(self._values.__getitem__, address) for address in self._values
+        }
+        """How each object is read; a dictionary of its own so that a PDO packs without detours."""
         self._write_hooks: dict[tuple[int, int], WriteHook] = {}
 
     def on_read(self, index: int, subindex: int, hook: ReadHook) -> None:
         """Let `hook` answer reads of an object from now on."""
-        self._read_hooks[self._entry(index, subindex).index, subindex] = hook
+        self.getters[self._entry(index, subindex).index, subindex] = hook
 
     def on_write(self, index: int, subindex: int, hook: WriteHook) -> None:
         """Let `hook` check and follow writes from the bus (SDO and RPDO) to an object."""
@@ -41,13 +45,11 @@ class ObjectValues:
 
     def get(self, index: int, subindex: int = 0) -> Value:
         """Return the present value. Raises SdoAbort when there is no such object."""
-        hook = self._read_hooks.get((index, subindex))
-        if hook is not None:
-            return hook()
         try:
-            return self._values[index, subindex]
+            getter = self.getters[index, subindex]
         except KeyError:
             raise self._missing(index) from None
+        return getter()
 
     def number(self, index: int, subindex: int = 0) -> int:
         """Return the present value of an integer object. Raises TypeError for strings and domains."""
@@ -128,7 +130,7 @@ class ObjectValues:
         """Take over another node id: stored and present values start from the EDS again."""
         self.node_id = node_id
         self._defaults = self._factory()
-        self._values = dict(self._defaults)
+        self._values.update(self._defaults)
 
     def _factory(self) -> dict[tuple[int, int], Value]:
         return {(e.index, e.subindex): e.default_for(self.node_id) for e in self.description}

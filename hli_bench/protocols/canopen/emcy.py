@@ -74,6 +74,8 @@ class EmergencyProducer:
 
     def tick(self, now: Ns) -> list[CanFrame]:
         """Return the messages that the inhibit time allows now."""
+        if not self._queue:
+            return []
         word = self._values.number(_COB_ID) if self._values.has(_COB_ID) else 0x80 + self._values.node_id
         if word & _INVALID:
             self._queue.clear()

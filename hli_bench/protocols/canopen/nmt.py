@@ -200,6 +200,8 @@ class HeartbeatConsumer:
 
     def on_frame(self, frame: CanFrame, now: Ns) -> None:
         """Take a heartbeat of a watched node."""
+        if not self._watched:
+            return
         heard = node_state(frame)
         watched = None if heard is None else self._watched.get(heard[0])
         if watched is not None:

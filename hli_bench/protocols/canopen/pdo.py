@@ -1,6 +1,7 @@
 """Process data objects (CiA 301): parameters, remapping, transmission types, packing plans."""
 
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -49,11 +50,13 @@ class PdoPlan:
 
     mapping: tuple[int, ...]
     entries: tuple[Entry, ...]
+    addresses: tuple[tuple[int, int], ...]
     codec: struct.Struct
 
     def pack(self, values: ObjectValues) -> bytes:
         """Return the present values of all mapped objects as PDO data."""
-        return self.codec.pack(*[values.get(entry.index, entry.subindex) for entry in self.entries])
+        getters = values.getters
+        return self.codec.pack(*[getters[address]() for address in self.addresses])
 
     def unpack(self, data: bytes) -> tuple[Value, ...]:
         """Return the values of the mapped objects; `data` has at least the plan's length."""
@@ -77,7 +80,8 @@ def make_plan(values: ObjectValues, mapping: tuple[int, ...], *, sending: bool) 
     codec = struct.Struct("".join(codes))
     if codec.size > MAX_BYTES:
         raise SdoAbort(AbortCode.PDO_LENGTH)
-    return PdoPlan(mapping, tuple(entries), codec)
+    addresses = tuple((entry.index, entry.subindex) for entry in entries)
+    return PdoPlan(mapping, tuple(entries), addresses, codec)
 
 
 def mapped_entry(values: ObjectValues, word: int, *, sending: bool) -> Entry | None:
@@ -106,22 +110,24 @@ class _Pdo:
     """Parameters of one PDO and the rules by which they may change."""
 
     __slots__ = (
+        "_changed",
         "_communication",
         "_mapping",
         "_values",
-        "changes",
         "cob_word",
         "plan",
         "sending",
         "transmission",
     )
 
-    def __init__(self, values: ObjectValues, communication: int, *, sending: bool) -> None:
+    def __init__(
+        self, values: ObjectValues, communication: int, changed: Callable[[], None], *, sending: bool
+    ) -> None:
         self._values = values
+        self._changed = changed
         self._communication = communication
         self._mapping = communication + MAPPING_OFFSET
         self.sending = sending
-        self.changes = 0
         self._hook()
         self.reload()
 
@@ -149,7 +155,7 @@ class _Pdo:
             self.plan = make_plan(self._values, self._entries(count), sending=self.sending)
         except SdoAbort as abort:
             raise InputError(f"default mapping of 0x{self._mapping:04X}: {abort}") from abort
-        self.changes += 1
+        self._changed()
 
     def _hook(self) -> None:
         communication, mapping = self._communication, self._mapping
@@ -176,13 +182,13 @@ class _Pdo:
             if self.valid and identifier != self.cob_id:
                 raise SdoAbort(AbortCode.RANGE)
         self.cob_word = word
-        self.changes += 1
+        self._changed()
 
     def _write_type(self, value: Value) -> None:
         if int(value) not in SYNCHRONOUS and int(value) not in ON_EVENT:
             raise SdoAbort(AbortCode.RANGE)
         self.transmission = int(value)
-        self.changes += 1
+        self._changed()
 
     def _write_inhibit(self, value: Value) -> None:
         """Refuse a change while the PDO exists."""
@@ -197,7 +203,7 @@ class _Pdo:
         if count > MAX_ENTRIES or (count and not self._values.has(self._mapping, count)):
             raise SdoAbort(AbortCode.PDO_LENGTH)
         self.plan = make_plan(self._values, self._entries(count), sending=self.sending)
-        self.changes += 1
+        self._changed()
 
     def _write_entry(self, value: Value) -> None:
         """Check an entry; it changes only while the PDO is invalid and the count is 0; 0 clears it."""
@@ -212,9 +218,9 @@ class Rpdo(_Pdo):
 
     __slots__ = ("_received",)
 
-    def __init__(self, values: ObjectValues, communication: int) -> None:
+    def __init__(self, values: ObjectValues, communication: int, changed: Callable[[], None]) -> None:
         self._received: bytes | None = None
-        super().__init__(values, communication, sending=False)
+        super().__init__(values, communication, changed, sending=False)
 
     def receive(self, data: bytes) -> bool:
         """Take data, effective now or, for synchronous types, at the next SYNC. False: too short."""
@@ -250,11 +256,11 @@ class Tpdo(_Pdo):
 
     __slots__ = ("_sent_at", "_sent_data", "_syncs")
 
-    def __init__(self, values: ObjectValues, communication: int) -> None:
+    def __init__(self, values: ObjectValues, communication: int, changed: Callable[[], None]) -> None:
         self._sent_at: Ns | None = None
         self._sent_data: bytes | None = None
         self._syncs = 0
-        super().__init__(values, communication, sending=True)
+        super().__init__(values, communication, changed, sending=True)
 
     def start(self) -> None:
         """Begin anew, on entering OPERATIONAL."""
@@ -318,24 +324,31 @@ class Tpdo(_Pdo):
 
 
 class PdoSet:
-    """All PDOs of a node, in the order of their numbers."""
+    """All PDOs of a node, in the order of their numbers; `changes` grows with every change of a parameter."""
 
-    __slots__ = ("rpdos", "tpdos")
+    __slots__ = ("_by_cob_id", "changes", "rpdos", "tpdos")
 
     def __init__(self, values: ObjectValues) -> None:
+        self.changes = 0
+        self._by_cob_id: dict[int, list[Rpdo]] | None = None
         indices = sorted(values.description.names)
-        self.rpdos = tuple(Rpdo(values, index) for index in indices if index in RPDO_COMMUNICATION)
-        self.tpdos = tuple(Tpdo(values, index) for index in indices if index in TPDO_COMMUNICATION)
-
-    @property
-    def changes(self) -> int:
-        """Grows with every change of a PDO parameter."""
-        return sum(pdo.changes for pdo in (*self.rpdos, *self.tpdos))
+        changed = self._changed
+        self.rpdos = tuple(Rpdo(values, index, changed) for index in indices if index in RPDO_COMMUNICATION)
+        self.tpdos = tuple(Tpdo(values, index, changed) for index in indices if index in TPDO_COMMUNICATION)
 
     @property
     def signature(self) -> tuple[Signature, ...]:
         """The signatures of all RPDOs, then of all TPDOs."""
         return tuple(pdo.signature for pdo in (*self.rpdos, *self.tpdos))
+
+    def receivers(self, cob_id: int) -> list[Rpdo]:
+        """Return the valid RPDOs of an identifier."""
+        if self._by_cob_id is None:
+            self._by_cob_id = {}
+            for rpdo in self.rpdos:
+                if rpdo.valid:
+                    self._by_cob_id.setdefault(rpdo.cob_id, []).append(rpdo)
+        return self._by_cob_id.get(cob_id, [])
 
     def reload(self) -> None:
         """Take over the dictionary's values after a reset."""
@@ -349,3 +362,7 @@ class PdoSet:
             rpdo.forget()
         for tpdo in self.tpdos:
             tpdo.start()
+
+    def _changed(self) -> None:
+        self.changes += 1
+        self._by_cob_id = None

@@ -394,7 +394,12 @@ class Drive:
 def create(name: str, node_id: int, eds_path: Path, row: Any, options: Mapping[str, object]) -> Drive:
     """Build the drive `name` from its EDS on its servo row. Raises InputError for a bad EDS or option."""
     checked = DriveOptions.from_mapping(options, name)
-    return Drive(name, Device(load(eds_path), node_id), row, checked)
+    description = load(eds_path)
+    for index, subindex in objects.ALL:
+        if (index, subindex) not in description:
+            message = f"a CiA 402 drive needs object 0x{index:04X}:{subindex:02X}"
+            raise InputError(message, file=str(eds_path))
+    return Drive(name, Device(description, node_id), row, checked)
 
 
 def _number(row: Any, name: str) -> int:

@@ -47,3 +47,11 @@ FOLLOWING_ERROR: Final = ObjectAddress(0x60F4)
 POSITION_DEMAND_INTERNAL: Final = ObjectAddress(0x60FC)
 DIGITAL_INPUTS: Final = ObjectAddress(0x60FD)
 SUPPORTED_MODES: Final = ObjectAddress(0x6502)
+
+ALL: Final = (
+    *(address for address in tuple(globals().values()) if isinstance(address, ObjectAddress)),
+    *LATCHES,
+    *PROBE_SOURCES,
+    *LATCH_TIMES,
+)
+"""Every object of this module: what the EDS of a drive must have."""

@@ -128,8 +128,12 @@ class _Pdo:
         self._communication = communication
         self._mapping = communication + MAPPING_OFFSET
         self.sending = sending
-        self._hook()
-        self.reload()
+        try:
+            self._hook()
+            self.reload()
+        except SdoAbort as abort:
+            message = f"0x{communication:04X} and 0x{self._mapping:04X} lack an object that a PDO needs"
+            raise InputError(message) from abort
 
     @property
     def cob_id(self) -> int:

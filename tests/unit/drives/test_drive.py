@@ -7,11 +7,12 @@ import canopen
 import numpy as np
 import pytest
 
-from drives.cia402.drive import STOP_TIMEOUT, Drive, DriveOptions
+from drives.cia402.drive import STOP_TIMEOUT, Drive, DriveOptions, create
 from drives.cia402.states import State, state_of
 from drives.models import servo402
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import Ns
+from hli_bench.laws.machine import supervise
 from hli_bench.laws.rows import LOG, SERVO
 from hli_bench.protocols.canopen.aborts import AbortCode
 from hli_bench.wire.can import CanFrame
@@ -371,6 +372,14 @@ def test_options_are_checked() -> None:
         DriveOptions.from_mapping({"following_error": "ignore"}, "Z")
 
 
+def test_an_eds_without_a_needed_object_is_bad_input(eds: Any, row: Any, tmp_path: Any) -> None:
+    text = eds.read_text().replace("[60B9]", "[2FFF]").replace("=0x60B9", "=0x2FFF")
+    poor = tmp_path / "poor.eds"
+    poor.write_text(text)
+    with pytest.raises(InputError, match=r"poor.eds: a CiA 402 drive needs object 0x60B9:00"):
+        create("Z", 1, poor, row, {})
+
+
 def test_ratings_of_the_machine_folder_win(row: Any) -> None:
     row["peak_permille"] = 2000
     servo402.create("Z", 1, row, {})
@@ -460,3 +469,33 @@ class TestRowToRow:
         assert drive.cyclic_signature()
         drive.exchange(0x10F, 0, 0, Ns(0))
         assert not drive.cyclic_signature()
+
+
+class TestWithTheFollowingErrorLaw:
+    """Window and time-out written over SDO, watched by the compiled law, reported by the drive."""
+
+    def cycles_until_fault(self, window: int, timeout_ms: int, error: int) -> int | None:
+        rows: Any = np.zeros(1, SERVO)
+        drive = servo402.create("Z", NODE_ID, rows[0], {})
+        drive.device.values.download(0x6065, 0, struct.pack("<I", window))
+        drive.device.values.download(0x6066, 0, struct.pack("<H", timeout_ms))
+        for word in (0x06, 0x0F):
+            drive.exchange(word, 0, 0, Ns(0))
+        rows["following_error"] = error
+        for cycle in range(1, 100):
+            rows["status_flags"] = 0
+            supervise(rows, 0, 1_000_000)
+            status = drive.exchange(0x0F, 0, 0, Ns(cycle * 1_000_000))
+            if state_of(status) is not State.OPERATION_ENABLED:
+                return cycle
+        return None
+
+    @pytest.mark.parametrize("sign", [-1, 1])
+    def test_error_outside_the_window_for_longer_than_the_time_out(self, sign: int) -> None:
+        assert self.cycles_until_fault(1_048_575, 10, sign * 1_048_576) == 11
+        assert self.cycles_until_fault(1_048_575, 0, sign * 1_048_576) == 1
+        assert self.cycles_until_fault(1_048_575, 10, sign * 1_048_575) is None
+
+    @pytest.mark.parametrize("off", [0, 0xFFFFFFFF])
+    def test_switched_off(self, off: int) -> None:
+        assert self.cycles_until_fault(off, 0, 2_000_000_000) is None

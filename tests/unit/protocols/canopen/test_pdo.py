@@ -248,6 +248,13 @@ def test_pdos_are_silent_outside_operational(device: Any) -> None:
     assert device.values.get(BYTE) == 0
 
 
+def test_missing_mapping_object_is_bad_input(request: Any) -> None:
+    text = request.path.with_name("node.eds").read_text()
+    text = text.replace("1A01", "2A01").replace("0x1A01", "0x2A01")
+    with pytest.raises(InputError, match="0x1801 and 0x1A01"):
+        Device(parse_text(text), 5)
+
+
 def test_broken_default_mapping_is_bad_input(request: Any) -> None:
     text = request.path.with_name("node.eds").read_text().replace("0x20040010", "0x20090010")
     with pytest.raises(InputError, match="0x1A00"):

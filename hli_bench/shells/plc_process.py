@@ -8,8 +8,9 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from queue import SimpleQueue
-from typing import Any
+from queue import Empty, SimpleQueue
+from time import monotonic
+from typing import Any, Final
 
 import zenoh
 
@@ -18,6 +19,9 @@ from hli_bench.plc import Task, load
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
 from hli_bench.shells.zenoh_client import HliClient
 from hli_bench.shells.zenoh_session import payload, queued
+
+RECONNECT_S: Final = 2.0
+"""How long a PLC waits for a bench that vanished before it ends; a link comes back in 0.2 s."""
 
 
 class AttachedPlc:
@@ -87,8 +91,20 @@ class AttachedPlc:
             elif kind == "detached":
                 return True
             elif sample.kind == zenoh.SampleKind.DELETE:
-                return False
+                return self._bench_is_back()
         return image
+
+    def _bench_is_back(self) -> bool:
+        """Tell whether a bench that went away shows up again: then only the link broke, e.g. of a frozen PLC."""
+        deadline = monotonic() + RECONNECT_S
+        while (remaining := deadline - monotonic()) > 0:
+            try:
+                kind, sample = self._inbox.get(timeout=remaining)
+            except Empty:
+                break
+            if kind == "alive" and sample.kind == zenoh.SampleKind.PUT:
+                return True
+        return False
 
 
 def attach(script: Path, endpoint: str, machine: str = "", name: str = "") -> None:

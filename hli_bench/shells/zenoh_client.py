@@ -5,6 +5,8 @@ from collections.abc import Iterator, Mapping
 from queue import Empty, SimpleQueue
 from typing import Any, Final, Self
 
+import zenoh
+
 from hli_bench.base.errors import EnvironmentLacks, InputError
 from hli_bench.protocols.hli.layout import Layout
 from hli_bench.shells.zenoh_session import TEXT, connect, payload, queued
@@ -84,7 +86,7 @@ class HliClient:
         watched = [
             self.session.declare_subscriber(f"{self.machine}/{put_path}", queued(changes.put, "change")),
             self.session.liveliness().declare_subscriber(
-                f"{self.machine}/bench/alive", queued(changes.put, "alive")
+                f"{self.machine}/bench/alive", queued(changes.put, "alive"), history=True
             ),
         ]
         try:
@@ -182,4 +184,4 @@ class HliClient:
                 kind, message = changes.get_nowait()
         except Empty:
             return False
-        return kind == "change" or bool(message.kind.name == "PUT")
+        return kind == "change" or bool(message.kind == zenoh.SampleKind.PUT)

@@ -61,6 +61,7 @@ def _config(mode: str, settings: dict[str, Any]) -> zenoh.Config:
         "mode": mode,
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
+        "scouting/delay": 0,
         "transport/shared_memory/enabled": False,
         "transport/link/tx/lease": LEASE_MS,
         **settings,

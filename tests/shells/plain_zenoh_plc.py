@@ -42,7 +42,7 @@ def run(session: zenoh.Session, machine: str, axis: str) -> None:
 
     session.declare_subscriber(f"{machine}/io/probe", into_inbox("probe"))
     session.declare_subscriber(f"{machine}/hli/image", into_inbox("image"))
-    session.liveliness().declare_subscriber(f"{machine}/bench/alive", into_inbox("alive"))
+    session.liveliness().declare_subscriber(f"{machine}/bench/alive", into_inbox("alive"), history=True)
     token = session.liveliness().declare_token(f"{machine}/plc/{NAME}/alive")
 
     elements = {row["path"]: row for row in json.loads(ask("hli/layout"))}

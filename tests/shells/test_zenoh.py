@@ -191,6 +191,9 @@ def lockstep_plc(endpoint: str, cycles: int) -> list[str]:
                 wrong.append(f"unit of {cycle} late")
             session.put("demo/plc/lock/commands", struct.pack("<QHq", cycle, time_id, cycle), express=True)
             due += 1
+        while not key.endswith("image") or struct.unpack_from("<Q", data)[0] < due:
+            key, sample = inbox.get(timeout=PATIENCE_S)
+            data = sample.payload.to_bytes()
         token.undeclare()
     return wrong
 
@@ -366,6 +369,7 @@ def test_lockstep_exchanges_2000_cycles_in_order(bench: SmallBench, elsewhere: A
         commands = bench.exchange("lock", probe=struct.pack("<8xQ", bench.cycle + 1))
         assert commands.cycle == bench.cycle
         assert [write.value for write in commands.writes] == [bench.cycle]
+    bench.publish()
     assert plc.result() == []
     assert bench.server.late == {}
     assert bench.server.refused == 0

@@ -1,1 +1,1 @@
-"""The bench: a machine folder becomes nodes, wiring and a schedule."""
+"""From a machine folder to a running bench: nodes, wiring, schedule, and the public class Bench."""

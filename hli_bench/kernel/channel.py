@@ -23,13 +23,14 @@ from hli_bench.kernel.blocks import (
     Text,
 )
 from hli_bench.kernel.core import Core
+from hli_bench.kernel.decoder import Decoder
 from hli_bench.kernel.drive_manager import functions
 from hli_bench.kernel.drive_manager.objects import ObjectChannel
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.path_preparation.dynamics import Ramp
 from hli_bench.kernel.position_controller import measurement
 from hli_bench.kernel.position_controller.measurement import Probe
-from hli_bench.kernel.records import CncError, MessageText
+from hli_bench.kernel.records import CncError, MeasuredValue, MessageText
 from hli_bench.kernel.sequence import Sequence
 from hli_bench.kernel.watches import cycle_reached, path_done, segment_reached
 from hli_bench.laws.rows import SEGMENTS
@@ -61,6 +62,7 @@ class Channel:
         self._core = core
         self._objects = objects
         self._monitoring = monitoring
+        self._decoder: Decoder | None = None
         self._items: Items | None = None
         self._answer: MachineState | None = None
         self._barrier: Item | None = None
@@ -72,19 +74,25 @@ class Channel:
         self._probes: dict[AxisIndex, Probe] = {}
         self._measured: dict[AxisIndex, float] = {}
         self._latched: dict[AxisIndex, bool] = {}
+        self.measured: list[tuple[MeasuredValue, float]] = []
+        """Every value this program has measured, with its V.A.MEAS.PCS.VALUE in mm."""
         self.source = Source("", 0)
         self.running = False
         self.completed = False
 
-    def start(self, items: Items) -> None:
+    def start(self, decoder: Decoder) -> None:
         """Begin a program."""
         core = self._core
         core.failed = False
         core.preparation.synchronise()
-        self._items = items
+        self._decoder = decoder
+        self._items = decoder.blocks()
         self._answer = None
         self._barrier = self._postponed = self._activity = None
         self._texts.clear()
+        self._measured.clear()
+        self._latched.clear()
+        self.measured.clear()
         self._probes = {axis.index: measurement.default_probe(core, axis.index) for axis in core.setup.axes}
         self._error_no_signal = core.setup.channel.meas_error_no_signal
         self.running = True
@@ -97,12 +105,12 @@ class Channel:
         self._wake.clear()
         if not self.running:
             return
-        if self._core.failed:
+        if self._has_failed():
             self._stop()
             return
         self._hand_out_texts()
         while self.running and self._proceed():
-            if self._core.failed:
+            if self._has_failed():
                 self._stop()
                 return
 
@@ -113,6 +121,9 @@ class Channel:
         self._core.path.abandon()
         self._core.preparation.synchronise()
         self._end(completed=False)
+
+    def _has_failed(self) -> bool:
+        return self._core.failed
 
     def _proceed(self) -> bool:
         """Do the next thing; False when it has to wait."""
@@ -276,11 +287,19 @@ class Channel:
         self.running = False
         self.completed = completed
 
+    def variables(self) -> dict[str, float]:
+        """Return the NC variables that the program set, read or measured, by name."""
+        return {} if self._decoder is None else self._decoder.variables(self._state())
+
     def take(self, run: measurement.Run) -> None:
         """Keep what a measuring run delivered; axes without a new value keep their old one (M-067)."""
         for axis in run.block.axes:
             self._latched[axis] = run.before_target.get(axis, False)
         self._measured |= {axis: mm(value.acs_tenth_um) for axis, value in run.values.items()}
+        variables = self.variables()
+        for axis, value in run.values.items():
+            pcs = variables[f"V.A.MEAS.PCS.VALUE.{self._core.axis(axis).name}"]
+            self.measured.append((value, pcs))
 
 
 class _Measuring:

@@ -16,6 +16,7 @@ from hli_bench.kernel.records import Emitted
 from hli_bench.kernel.sequence import Sequence
 from hli_bench.kernel.setup import KernelSetup
 from hli_bench.laws.rows import FOLLOW, KernelRows
+from hli_bench.manual.errors import hli as hli_errors
 from hli_bench.protocols.canopen.sync import sync_frame
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
 from hli_bench.protocols.hli.image import Image
@@ -72,7 +73,7 @@ class Kernel:
             for axis in self.setup.axes
         ]
         decoder = Decoder(lines, name, axes, DecoderDefaults(self.setup.channel.messtyp))
-        self.channel.start(decoder.blocks())
+        self.channel.start(decoder)
 
     def take_frames(self, frames: Iterable[CanFrame]) -> bool:
         """Take what the bus brought at this SYNC; tell whether any of it needs a decision."""
@@ -133,6 +134,11 @@ class Kernel:
             if self.core.row(axis.index)["mode"] == FOLLOW:
                 drive = start_up.Drive(self.core, self._objects, axis.index)
                 self._starting[axis.index] = Sequence(start_up.TABLE, drive, "reset", self.core.watches)
+
+    def plc_lost(self, name: str) -> None:
+        """A PLC has gone or frozen: the CNC reacts as to a PLC stop, the program ends with an error."""
+        if self.channel.running:
+            self.core.report(hli_errors.PLC_STOPPED, self.channel.source, name)
 
     def publish(self) -> None:
         """Bring the positions on the HLI up to date; called before somebody looks."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Write:
-    """One element written: path as `ax/3/lr_mc_control/probing_signal/command_w`, value in the element's type."""
+    """One element written; path as `ax/3/lr_mc_control/probing_signal/command_w`."""
 
     path: str
     value: int | bool

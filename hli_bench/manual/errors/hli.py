@@ -19,3 +19,7 @@ AXIS_ORDER: Final[ErrorSheet] = motion_error(
 CHANNEL_ORDER: Final[ErrorSheet] = motion_error(
     "channel_order", 40_088, "the channel unit cannot take an order"
 )
+PLC_STOPPED: Final[ErrorSheet] = motion_error(
+    "plc_stopped", 40_011, "PLC {0} does not serve the HLI any more", "name of the PLC task"
+)
+"""The catalogue's message for a PLC side that is not there; used for a PLC that died or froze (decided here)."""

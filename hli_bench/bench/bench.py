@@ -1,0 +1,208 @@
+"""The public class: a machine that runs NC programs."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Final, Self
+
+from hli_bench.base.errors import BenchError, InputError
+from hli_bench.bench import build
+from hli_bench.bench.config import MachineConfig, PlcConfig, load
+from hli_bench.bench.plc_ports import LocalPlc
+from hli_bench.bench.result import Collector, Result, measurements
+from hli_bench.kernel.records import Emitted
+from hli_bench.plc import Task
+from hli_bench.plc import load as load_script
+from hli_bench.protocols.hli.access import Refusal
+from hli_bench.runtime.engine import Engine, LocalLink, Observer
+from hli_bench.shells.pacing import RealPace, Stopwatch
+from hli_bench.wire.can import CanFrame
+from hli_bench.wire.hli import Commands
+from hli_bench.wire.signals import Edge
+
+START_UP_CYCLES: Final = 2000
+"""Cycles within which all drives must have come into operation."""
+FOREVER: Final = 1 << 62
+
+OnRecord = Callable[[Emitted], None]
+
+
+class Bench:
+    """A bench of its own: kernel, drives, plant, terminals and PLC tasks in this process, in virtual time.
+
+    `settings` are dotted keys of the machine folder, as with `--set`. `plc` replaces the machine's PLC
+    scripts; an empty list leaves it without any. Use it as a context manager.
+    Raises InputError for a bad machine folder or setting, NotEmulated for what is not built.
+    """
+
+    def __init__(
+        self,
+        machine: str | Path = "demo",
+        settings: Mapping[str, object] | None = None,
+        *,
+        plc: Sequence[str | Path] | None = None,
+        pace: str = "free",
+        observers: Sequence[Observer] = (),
+        on_record: OnRecord | None = None,
+    ) -> None:
+        self.config: MachineConfig = load(machine, settings or {})
+        self.kernel = build.kernel(self.config)
+        self.side = build.machine_side(self.config)
+        self.engine = Engine(self.kernel, LocalLink(self.side), self.side.pending)
+        self.engine.observers += observers
+        self._tap = _Tap(on_record)
+        self.engine.observers.append(self._tap)
+        self._pace = RealPace(self.config.cycle_ns) if pace == "real" else None
+        self._plcs = plc_configs(self.config, plc)
+        self._up = False
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the bench."""
+
+    def start_up(self) -> None:
+        """Switch on: bring all drives into operation, then start the PLC tasks. `run` does it when needed."""
+        if self._up:
+            return
+        self._up = True
+        self.engine.power_on()
+        if not self._advance(lambda: self.kernel.ready, START_UP_CYCLES):
+            raise BenchError(f"not all drives came into operation within {START_UP_CYCLES} cycles")
+        self._attach_plcs()
+
+    def run(self, program: str | Path | Iterable[str], name: str = "") -> Result:
+        """Run an NC program to its end and return the result.
+
+        `program` is NC text, a path, or lines. Raises InputError (file, line, column) for text that is no
+        NC program and NotEmulated for what is not built; errors of the emulated CNC stand in the result.
+        """
+        lines, name = _program(program, name)
+        watch = Stopwatch()
+        self.start_up()
+        collector = Collector(self.kernel.setup.axes)
+        self._tap.collector = collector
+        first = self.engine.cycle
+        try:
+            self.kernel.start(lines, name)
+            self.engine.wake()
+            self._advance(lambda: not self.kernel.channel.running, FOREVER)
+        except BaseException:
+            self.kernel.reset()
+            raise
+        finally:
+            self._tap.collector = None
+        cycles = self.engine.cycle - first
+        return Result(
+            program=name,
+            status="completed" if self.kernel.channel.completed else "error",
+            messages=collector.messages,
+            errors=collector.errors,
+            variables=self.kernel.channel.variables(),
+            measurements=measurements(self.kernel),
+            homing=collector.homing,
+            sim_s=cycles * self.config.cycle_ns * 1e-9,
+            wall_s=watch.seconds(),
+            cycles=cycles,
+            late_cycles=self._pace.lateness.late if self._pace else 0,
+        )
+
+    def advance(self, cycles: int) -> None:
+        """Let `cycles` cycles pass without a program."""
+        self.start_up()
+        self._advance(lambda: False, self.engine.cycle + cycles)
+
+    def reset(self) -> None:
+        """CNC reset: errors are cleared, drives that dropped out come back."""
+        self.kernel.reset()
+        self.engine.wake()
+
+    def position_mm(self, axis: str) -> float:
+        """Return the actual position of an axis in machine coordinates, mm or degrees."""
+        return self.kernel.position_mm(self.config.axis(axis).index)
+
+    def _advance(self, until: Callable[[], bool], limit: int) -> bool:
+        if self._pace is None:
+            return self.engine.run(until, limit)
+        while not until():
+            if self.engine.cycle >= limit:
+                return False
+            self._pace.wait()
+            self.engine.step(self.engine.cycle + 1)
+        return True
+
+    def _attach_plcs(self) -> None:
+        for plc in self._plcs:
+            if plc.process:
+                raise InputError(f"plc {plc.name}: process = true needs a bench with --zenoh")
+            script = load_script(plc.script)
+            period_us = plc.period_us or script.period_us
+            layouts = [terminal.layout for terminal in self.side.terminals]
+            task = Task(plc.name, script, period_us, self.kernel.image.layout, layouts)
+            self.engine.plcs.append(LocalPlc(task, self.config.cycle_ns))
+
+
+def plc_configs(config: MachineConfig, scripts: Sequence[str | Path] | None) -> list[PlcConfig]:
+    """Return the PLC tasks: the machine's own, or one for each of `scripts`."""
+    if scripts is None:
+        return list(config.plcs)
+    return [PlcConfig(Path(script).stem, Path(script), None, False) for script in scripts]
+
+
+class _Tap:
+    """Observer of the bench itself: gathers records for the result, hands them on as they come."""
+
+    def __init__(self, on_record: OnRecord | None) -> None:
+        self._on_record = on_record
+        self.collector: Collector | None = None
+
+    def cycles(self, first: int, count: int) -> None:
+        """Nothing to gather."""
+
+    def frames(self, cycle: int, frames: Sequence[CanFrame]) -> None:
+        """Nothing to gather."""
+
+    def edges(self, edges: Sequence[Edge]) -> None:
+        """Nothing to gather."""
+
+    def commands(self, commands: Commands) -> None:
+        """Nothing to gather."""
+
+    def emitted(self, cycle: int, records: Sequence[Emitted]) -> None:
+        """Gather what belongs to the running program."""
+        if self.collector is not None:
+            self.collector.take(records)
+        if self._on_record is not None:
+            for record in records:
+                self._on_record(record)
+
+    def refused(self, cycle: int, refusals: Sequence[Refusal]) -> None:
+        """Scripts of this process that write what they must not are an error of the set-up."""
+        first = refusals[0]
+        raise InputError(f"plc {first.writer}: {first.path}: {first.reason}")
+
+
+def _program(program: str | Path | Iterable[str], name: str) -> tuple[Iterable[str], str]:
+    """Return the lines of a program and the name under which its errors are reported."""
+    if isinstance(program, str) and "\n" not in program and program.lower().endswith(".nc"):
+        program = Path(program)
+    if isinstance(program, Path):
+        if not program.is_file():
+            raise InputError("no such NC program", file=str(program))
+        return _lines_of(program), name or str(program)
+    if isinstance(program, str):
+        return program.splitlines(), name or "program"
+    return program, name or "program"
+
+
+def _lines_of(path: Path) -> Iterable[str]:
+    """Yield the lines of a file as they are needed."""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        for line in file:
+            yield line.rstrip("\n")

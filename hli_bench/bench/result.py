@@ -1,0 +1,137 @@
+"""What a program run gives back: messages, errors, variables, measurements, homing, times."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from hli_bench.base.units import mm
+from hli_bench.kernel.cycle import Kernel
+from hli_bench.kernel.records import CncError, Emitted, Homed, MeasuredValue, MessageText
+from hli_bench.kernel.setup import AxisSetup
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """A #MSG text."""
+
+    block: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Error:
+    """An error or warning of the CNC; `values` by their meaning."""
+
+    id: int
+    severity: str
+    axis: str
+    block: str
+    text: str
+    values: Mapping[str, float | int | str]
+
+    def __str__(self) -> str:
+        place = "".join(f" {part}" for part in (f"[{self.axis}]" if self.axis else "", self.block) if part)
+        return f"P-ERR-{self.id}{place}: {self.text}"
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """A measured value in mm (degrees); `source` is the value of P-AXIS-00516, `edge` POS or NEG."""
+
+    axis: str
+    block: str
+    source: str
+    acs_mm: float
+    pcs_mm: float
+    dc_ns: int
+    edge: str
+
+
+@dataclass(frozen=True, slots=True)
+class Homing:
+    """An axis that was homed: the reference position it took over, and how."""
+
+    axis: str
+    referenced: bool
+    position_mm: float
+    method: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
+    """Result of one program; lengths in mm, angles in degrees, as in the NC program."""
+
+    program: str
+    status: str
+    messages: Sequence[Message]
+    errors: Sequence[Error]
+    variables: Mapping[str, float]
+    measurements: Sequence[Measurement]
+    homing: Sequence[Homing]
+    sim_s: float
+    wall_s: float
+    cycles: int
+    late_cycles: int = 0
+
+    @property
+    def completed(self) -> bool:
+        """The program ended with M02 or M30."""
+        return self.status == "completed"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what `--result` writes."""
+        return asdict(self)
+
+
+class Collector:
+    """Gathers what the kernel emits while a program runs."""
+
+    __slots__ = ("_axes", "errors", "homing", "messages")
+
+    def __init__(self, axes: Sequence[AxisSetup]) -> None:
+        self._axes = axes
+        self.messages: list[Message] = []
+        self.errors: list[Error] = []
+        self.homing: list[Homing] = []
+
+    def take(self, records: Sequence[Emitted]) -> None:
+        """Sort records by kind."""
+        for record in records:
+            match record:
+                case MessageText():
+                    self.messages.append(Message(record.source.number, record.text))
+                case CncError():
+                    self.errors.append(error_of(record))
+                case Homed():
+                    name = self._axes[record.axis].name
+                    self.homing.append(Homing(name, True, mm(record.position_tenth_um), record.method))
+                case MeasuredValue():
+                    pass
+
+
+def error_of(record: CncError) -> Error:
+    """Return the result form of an error record."""
+    return Error(
+        record.number,
+        str(record.severity),
+        record.axis,
+        record.source.number,
+        record.text,
+        dict(record.values),
+    )
+
+
+def measurements(kernel: Kernel) -> list[Measurement]:
+    """Return what the program has measured, in order."""
+    return [
+        Measurement(
+            axis=kernel.setup.axes[value.axis].name,
+            block=value.source.number,
+            source=value.origin,
+            acs_mm=mm(value.acs_tenth_um),
+            pcs_mm=pcs_mm,
+            dc_ns=int(value.dc_ns),
+            edge=value.edge,
+        )
+        for value, pcs_mm in kernel.channel.measured
+    ]

@@ -1,0 +1,1 @@
+"""The only I/O: clocks, processes, SocketCAN, Zenoh, Modbus TCP, files."""

@@ -202,7 +202,10 @@ class HliServer:
             ("hli/unit/**", self._on_member),
             ("cnc/reset", self._on_reset_put),
         ):
-            session.declare_subscriber(f"{machine}/{key}", queued(put, on_sample))
+            # Remote only: the bench's own puts of units would come back as writes.
+            session.declare_subscriber(
+                f"{machine}/{key}", queued(put, on_sample), allowed_origin=zenoh.Locality.REMOTE
+            )
         session.liveliness().declare_subscriber(f"{machine}/plc/*/alive", queued(put, self._on_alive))
         for key, on_query in (
             ("hli/layout", self._reader(values.whole_layout)),

@@ -318,6 +318,14 @@ def test_error_records_of_the_cnc_are_kept(bench: SmallBench, elsewhere: Any) ->
 # --- writes by put
 
 
+def test_what_the_bench_puts_is_no_request_to_itself(bench: SmallBench, elsewhere: Any) -> None:
+    bench.image.set(LAYOUT.element(f"{TIME}/state_r").id, 5)
+    bench.publish()
+    ask(bench, elsewhere, with_client, "state")
+    assert [type(request) for request in bench.seen] == [State]
+    assert bench.server.refused == 0
+
+
 @pytest.mark.parametrize(
     ("value", "encoding"),
     [(struct.pack("<q", -5), "zenoh/bytes"), (b"-5", "text/plain"), (b"-5", "application/json")],

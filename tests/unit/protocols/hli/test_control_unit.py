@@ -1,3 +1,4 @@
+import json
 from typing import Any
 
 import pytest
@@ -7,6 +8,7 @@ from hli_bench.protocols.hli.control_unit import ControlUnits
 from hli_bench.protocols.hli.image import Image
 from hli_bench.protocols.hli.layout import Layout
 from hli_bench.wire.hli import Commands, Write
+from hli_bench.wire.images import size_of
 
 PROBE = "ax/1/lr_mc_control/probing_signal"
 FEED = "ax/1/lr_mc_control/release_feedhold"
@@ -132,3 +134,49 @@ def test_when_its_plc_leaves_a_unit_falls_back_to_the_gui(machine: Any) -> None:
 def test_every_unit_is_known_by_its_old_name_too(machine: Any) -> None:
     assert machine.units["ax/1/MCControlBoolUnit_ProbingSignal"] is machine.units[PROBE]
     assert PROBE in [unit.path for unit in machine.units]
+
+
+def test_a_unit_with_usage_check_takes_its_command_once_for_each_semaphor() -> None:
+    members = [
+        ("request_r", "SGN32", "r"),
+        ("enable_w", "BOOL", "w"),
+        ("command_w", "SGN32", "w"),
+        ("state_r", "SGN32", "r"),
+        ("command_semaphor_rw", "BOOL", "rw"),
+    ]
+    rows = [
+        ("ch/1/head/plc_present_w", "BOOL", "w"),
+        *((f"ch/1/area/order/{m}", t, a) for m, t, a in members),
+    ]
+    image = Image(
+        Layout.from_json(
+            json.dumps(
+                [
+                    {
+                        "id": n,
+                        "path": path,
+                        "type": t,
+                        "unit": "",
+                        "offset": 8 * n,
+                        "size": size_of(t),
+                        "access": a,
+                    }
+                    for n, (path, t, a) in enumerate(rows)
+                ]
+            )
+        )
+    )
+    units, unit = ControlUnits(image, {}), "ch/1/area/order"
+
+    def write(**values: int) -> list[int | bool]:
+        for member, value in values.items():
+            image.write(image.layout.element(f"{unit}/{member}").id, value)
+        return [sampled.effective for sampled in units.sample()]
+
+    image.write(0, True)
+    write(enable_w=True)
+    assert write(command_w=5) == []
+    assert write(command_semaphor_rw=True) == [5]
+    assert image.get(image.layout.element(f"{unit}/command_semaphor_rw").id) is False
+    assert write(command_w=6) == []
+    assert write(command_w=5, command_semaphor_rw=True) == [5]

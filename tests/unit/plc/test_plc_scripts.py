@@ -50,7 +50,6 @@ def test_probe_level_and_time_reach_every_measurement_axis_over_enabled_units(na
         assert after[f"{area}/timestamp/enable_w"] is True
 
 
-@pytest.mark.req("H-018")
 @pytest.mark.parametrize("name", ["homing_cam.py", "demo.py"])
 def test_each_cam_reaches_its_axis(name: Any) -> None:
     before, after = run(name, QUIET, ON_CAM)

@@ -56,6 +56,7 @@ def test_positions_of_rotary_axes_count_in_degrees(layout: Any) -> None:
     assert layout.element("ax/5/lr_mc_control/probing_position/command_w").unit == "0.0001°"
 
 
+@pytest.mark.req("H-195")
 @pytest.mark.parametrize(
     ("name", "path"),
     [

@@ -1,6 +1,9 @@
 """The kernel as one node: the order of its cycle, and the only place that brings the stages together."""
 
 from collections.abc import Iterable
+from struct import Struct
+
+import numpy as np
 
 from hli_bench.base.ids import AxisIndex
 from hli_bench.base.units import mm
@@ -26,6 +29,9 @@ from hli_bench.wire.can import CanFrame
 _TYPE_NUMBER = {"T": 1, "R": 2, "S": 4}
 _LAYOUT_KIND = {"T": "linear", "R": "rotary", "S": "spindle"}
 FULL_OVERRIDE = 1000
+_POSITIONS = Struct("<iii")
+"""Actual position, command position, lag: neighbours in the image, and not worth a message each when they change."""
+_SGN32_LOW, _SGN32_HIGH = -(1 << 31), (1 << 31) - 1
 
 
 class Kernel:
@@ -43,6 +49,10 @@ class Kernel:
         self._monitoring = Monitoring(self.core)
         self.channel = Channel(self.core, self._objects, self._monitoring)
         self._starting: dict[AxisIndex, Sequence[start_up.Drive]] = {}
+        self._positions = [
+            self.image.layout.element(f"ax/{axis.number}/lr_state/active_position_r").offset
+            for axis in setup.axes
+        ]
         self._show_heads()
 
     @property
@@ -142,12 +152,14 @@ class Kernel:
 
     def publish(self) -> None:
         """Bring the positions on the HLI up to date; called before somebody looks."""
-        core = self.core
-        for axis in self.setup.axes:
-            row = core.row(axis.index)
-            core.show(axis.index, "lr_state/active_position_r", _sgn32(float(row["actual"])))
-            core.show(axis.index, "lr_state/command_position_r", _sgn32(float(row["command"])))
-            core.show(axis.index, "lr_state/position_lag_r", _sgn32(float(row["lag"])))
+        axis = self.core.rows.axis
+        data = self.image.data
+        columns = [
+            np.rint(axis[name]).clip(_SGN32_LOW, _SGN32_HIGH).tolist()
+            for name in ("actual", "command", "lag")
+        ]
+        for offset, actual, command, lag in zip(self._positions, *columns, strict=True):
+            _POSITIONS.pack_into(data, offset, int(actual), int(command), int(lag))
 
     def position_mm(self, axis: AxisIndex) -> float:
         """Return the actual position of an axis in mm (degrees)."""
@@ -208,7 +220,3 @@ class Kernel:
             core.show(axis.index, "head/axis_type_r", _TYPE_NUMBER[axis.kind])
             core.show(axis.index, "lr_state/drive_type_r", int(axis.params.kenngr.antr_typ))
             core.show(axis.index, "lr_state/homing_done_r", core.referenced[axis.index])
-
-
-def _sgn32(tenth_um: float) -> int:
-    return max(-(1 << 31), min((1 << 31) - 1, round(tenth_um)))

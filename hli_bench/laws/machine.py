@@ -380,7 +380,7 @@ def advance_machine(
             )
     for sub in range(sub_steps):
         begin = begin_ns + sub * step_ns
-        part = (sub + 1) / sub_steps
+        part = sub / sub_steps
         for axis in range(axes):
             row = servo[axis]
             if row["enabled"] == 0:

@@ -1,0 +1,267 @@
+"""A run as an MCAP file, written while it runs: numbers of all axes in blocks, events between them.
+
+Topics: `meta` (one message), `axes` (blocks of cycles as the log holds them), `can` (frames that are no
+telegrams; the telegrams follow from `axes`), `edges`, `plc`, `refused`, `cnc`. Times are bench time in ns.
+A block begins at a multiple of BLOCK_CYCLES and what happened in it stands behind it in order of time, so
+equal runs give equal bytes however they were cut into strides. Decision 0011.
+"""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from struct import Struct
+from types import TracebackType
+from typing import Any, Final, Self
+
+import numpy as np
+from mcap.exceptions import EndOfFile, InvalidMagic
+from mcap.records import Channel, Message, Schema
+from mcap.stream_reader import StreamReader
+from mcap.writer import CompressionType, Writer
+
+from hli_bench.base.errors import InputError
+from hli_bench.base.time import Ns
+from hli_bench.kernel.records import Emitted
+from hli_bench.kernel.setup import KernelSetup
+from hli_bench.laws.rows import LOG, LOG_CYCLES, Rows
+from hli_bench.protocols.hli.access import Refusal
+from hli_bench.runtime.frames import CycleBuffer
+from hli_bench.wire.can import CanFrame
+from hli_bench.wire.hli import Commands
+from hli_bench.wire.signals import Edge
+
+FORMAT: Final = 1
+BLOCK_CYCLES: Final = 250
+CHUNK_BYTES: Final = 1 << 20
+"""Uncompressed; what a crash can cost at most."""
+WRITER: Final = "hli-bench"
+
+_BLOCK: Final = Struct("<QII")
+_CAN: Final = Struct("<HBB")
+_REMOTE: Final = 1
+_TOPICS: Final = ("meta", "axes", "can", "edges", "plc", "refused", "cnc")
+_PACKED: Final = "packed"
+_TEXT: Final = {"type": "string"}
+_WHOLE: Final = {"type": "integer"}
+
+
+def _object(**properties: object) -> dict[str, object]:
+    return {"type": "object", "properties": properties, "required": list(properties)}
+
+
+_SCHEMAS: Final[Mapping[str, object]] = {
+    "meta": _object(
+        format=_WHOLE,
+        machine=_TEXT,
+        cycle_ns=_WHOLE,
+        dc_epoch_ns=_WHOLE,
+        axes={"type": "array", "items": _object(name=_TEXT, number=_WHOLE, node=_WHOLE, kind=_TEXT)},
+        overrides={"type": "object"},
+    ),
+    "axes": {
+        "byte_order": "little",
+        "header": ["first cycle: u8", "cycles: u4", "axes: u4"],
+        "rows": "cycles x axes records without padding, lengths of f8 fields in 0.1 um, increments else",
+        "record": [list(field) for field in LOG.newbyteorder("<").descr],
+    },
+    "can": {
+        "byte_order": "little",
+        "header": ["identifier: u2", "flags: u1, bit 0 remote frame", "length: u1"],
+        "data": "length bytes",
+    },
+    "edges": _object(signal=_TEXT, level={"type": "boolean"}),
+    "plc": _object(plc=_TEXT, cycle=_WHOLE, writes={"type": "array"}),
+    "refused": _object(path=_TEXT, reason=_TEXT, writer=_TEXT),
+    "cnc": _object(kind=_TEXT),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class AxesBlock:
+    """Cycles `first` ... of all axes: `rows` has shape (cycles, axes) and the fields of the log."""
+
+    first: int
+    rows: Rows
+
+
+@dataclass(frozen=True, slots=True)
+class TraceEvent:
+    """Something at an instant: `value` is a CanFrame for topic `can`, the decoded object for the others."""
+
+    topic: str
+    at_ns: Ns
+    value: Any
+
+
+class TraceFile:
+    """Observer that writes the trace of a run. Memory does not grow with the run."""
+
+    def __init__(
+        self,
+        path: Path,
+        setup: KernelSetup,
+        log: Rows,
+        machine: str,
+        overrides: Mapping[str, object] | None = None,
+    ) -> None:
+        """`log` is the kernel's ring. Raises OSError when the file cannot be written."""
+        self._cycle_ns = setup.cycle_ns
+        self._axes = len(setup.axes)
+        self._buffer = CycleBuffer(log, LOG_CYCLES + BLOCK_CYCLES)
+        self._waiting: list[tuple[Ns, int, bytes]] = []
+        self._file = path.open("wb")
+        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._writer.start(profile="", library=WRITER)
+        for topic in _TOPICS:
+            self._register(topic)
+        axes = [
+            {"name": axis.name, "number": axis.number, "node": axis.node, "kind": axis.kind}
+            for axis in setup.axes
+        ]
+        meta = {
+            "format": FORMAT,
+            "machine": machine,
+            "cycle_ns": setup.cycle_ns,
+            "dc_epoch_ns": setup.dc_epoch_ns,
+            "axes": axes,
+            "overrides": {key: str(value) for key, value in (overrides or {}).items()},
+        }
+        self._put(Ns(0), _id("meta"), _json(meta))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def cycles(self, first: int, count: int) -> None:
+        """Write the blocks that are complete with their events, then take new cycles of the log ring."""
+        self._write_blocks()
+        self._buffer.add(first, count)
+
+    def frames(self, cycle: int, frames: Sequence[CanFrame]) -> None:
+        """Take frames beside the telegrams."""
+        for frame in frames:
+            head = _CAN.pack(frame.cob_id, _REMOTE if frame.remote else 0, len(frame.data))
+            self._event(Ns(cycle * self._cycle_ns), "can", head + frame.data)
+
+    def edges(self, edges: Sequence[Edge]) -> None:
+        """Take edges of signals."""
+        for edge in edges:
+            self._event(edge.at_ns, "edges", _json({"signal": edge.signal, "level": edge.level}))
+
+    def emitted(self, cycle: int, records: Sequence[Emitted]) -> None:
+        """Take what the kernel emitted."""
+        for record in records:
+            value = {"kind": type(record).__name__, **asdict(record)}
+            self._event(Ns(cycle * self._cycle_ns), "cnc", _json(value))
+
+    def commands(self, commands: Commands) -> None:
+        """Take what a PLC wrote."""
+        writes = [[write.path, write.value] for write in commands.writes]
+        value = {"plc": commands.plc, "cycle": commands.cycle, "writes": writes}
+        self._event(Ns(commands.cycle * self._cycle_ns), "plc", _json(value))
+
+    def refused(self, cycle: int, refusals: Sequence[Refusal]) -> None:
+        """Take writes that were refused."""
+        for refusal in refusals:
+            self._event(Ns(cycle * self._cycle_ns), "refused", _json(asdict(refusal)))
+
+    def close(self) -> None:
+        """Write what waits and the index, close the file. May be called again."""
+        if self._file.closed:
+            return
+        self._write_blocks()
+        if self._buffer.count:
+            self._write_block(self._buffer.count)
+        self._write_events(None)
+        self._writer.finish()  # type: ignore[no-untyped-call]  # mcap leaves it bare
+        self._file.close()
+
+    def _write_blocks(self) -> None:
+        """Write complete blocks. Their last events came after the cycles, so this waits for the next call."""
+        while self._buffer.count:
+            cycles = BLOCK_CYCLES - self._buffer.first % BLOCK_CYCLES
+            if self._buffer.count < cycles:
+                return
+            self._write_block(cycles)
+
+    def _write_block(self, cycles: int) -> None:
+        first = self._buffer.first
+        rows = np.ascontiguousarray(self._buffer.take(cycles), LOG.newbyteorder("<"))
+        head = _BLOCK.pack(first, len(rows), self._axes)
+        self._put(Ns(first * self._cycle_ns), _id("axes"), head + rows.tobytes())
+        self._write_events(Ns((first + cycles - 1) * self._cycle_ns))
+
+    def _write_events(self, until: Ns | None) -> None:
+        """Write waiting events up to an instant (all of them for None), in order of time and topic."""
+        due = [event for event in self._waiting if until is None or event[0] <= until]
+        self._waiting = [event for event in self._waiting if until is not None and event[0] > until]
+        for at_ns, channel, data in sorted(due, key=lambda event: event[:2]):
+            self._put(at_ns, channel, data)
+
+    def _event(self, at_ns: Ns, topic: str, data: bytes) -> None:
+        self._waiting.append((at_ns, _id(topic), data))
+
+    def _put(self, at_ns: Ns, channel: int, data: bytes) -> None:
+        self._writer.add_message(channel_id=channel, log_time=at_ns, publish_time=at_ns, data=data)
+
+    def _register(self, topic: str) -> None:
+        packed = topic in ("axes", "can")
+        encoding = _PACKED if packed else "jsonschema"
+        schema = self._writer.register_schema(f"{WRITER}/{topic}", encoding, _json(_SCHEMAS[topic]))
+        self._writer.register_channel(topic, _PACKED if packed else "json", schema)
+
+
+def _id(topic: str) -> int:
+    """Return the channel of a topic: the writer numbers them from 1 in the order of registration."""
+    return _TOPICS.index(topic) + 1
+
+
+def _json(value: object) -> bytes:
+    return json.dumps(value, sort_keys=True, separators=(",", ":")).encode()
+
+
+def read(path: Path) -> Iterator[AxesBlock | TraceEvent]:
+    """Read a trace in the order of the file; one that was cut off ends with its last complete chunk.
+
+    Raises InputError for a file that is no trace, OSError when it cannot be opened.
+    """
+    schemas: dict[int, Schema] = {}
+    channels: dict[int, Channel] = {}
+    with path.open("rb") as file:
+        try:
+            for record in StreamReader(file).records:
+                if isinstance(record, Schema):
+                    schemas[record.id] = record
+                elif isinstance(record, Channel):
+                    channels[record.id] = record
+                elif isinstance(record, Message):
+                    channel = channels[record.channel_id]
+                    yield _decoded(record, channel.topic, schemas[channel.schema_id])
+        except EndOfFile:
+            return
+        except InvalidMagic as error:
+            raise InputError(f"no trace: {error}", file=str(path)) from error
+
+
+def _decoded(message: Message, topic: str, schema: Schema) -> AxesBlock | TraceEvent:
+    at_ns = Ns(message.log_time)
+    if topic == "axes":
+        first, cycles, axes = _BLOCK.unpack_from(message.data)
+        record = np.dtype([_field(entry) for entry in json.loads(schema.data)["record"]])
+        rows = np.frombuffer(message.data, record, offset=_BLOCK.size).reshape(cycles, axes)
+        return AxesBlock(first, rows)
+    if topic == "can":
+        cob_id, flags, length = _CAN.unpack_from(message.data)
+        data = message.data[_CAN.size : _CAN.size + length]
+        return TraceEvent(topic, at_ns, CanFrame(cob_id, data, remote=bool(flags & _REMOTE)))
+    return TraceEvent(topic, at_ns, json.loads(message.data))
+
+
+def _field(entry: Sequence[Any]) -> tuple[Any, ...]:
+    """Return a field of the schema as numpy takes it: name, type and, for arrays, the shape."""
+    return tuple(tuple(part) if isinstance(part, list) else part for part in entry)

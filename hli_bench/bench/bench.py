@@ -1,14 +1,18 @@
 """The public class: a machine that runs NC programs."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Final, Self
+from typing import Any, Final, Self
 
 from hli_bench.base.errors import BenchError, InputError
-from hli_bench.bench import build
+from hli_bench.bench import build, state
 from hli_bench.bench.config import MachineConfig, PlcConfig, load
+from hli_bench.bench.door import HliDoor, result_reply
 from hli_bench.bench.plc_ports import LocalPlc
+from hli_bench.bench.remote import RemoteMachine
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.kernel.records import Emitted
 from hli_bench.plc import Task
@@ -16,6 +20,8 @@ from hli_bench.plc import load as load_script
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, LocalLink, Observer
 from hli_bench.shells.pacing import RealPace, Stopwatch
+from hli_bench.shells.processes import PlcProcess, free_endpoint
+from hli_bench.shells.zenoh_server import HliServer
 from hli_bench.wire.can import CanFrame
 from hli_bench.wire.hli import Commands
 from hli_bench.wire.signals import Edge
@@ -23,6 +29,10 @@ from hli_bench.wire.signals import Edge
 START_UP_CYCLES: Final = 2000
 """Cycles within which all drives must have come into operation."""
 FOREVER: Final = 1 << 62
+IDLE_S: Final = 0.2
+"""Longest wait for a client while time stands still."""
+ATTACH_WAITS: Final = 150
+"""A PLC process gets so many waits to attach."""
 
 OnRecord = Callable[[Emitted], None]
 
@@ -42,16 +52,21 @@ class Bench:
         *,
         plc: Sequence[str | Path] | None = None,
         pace: str = "free",
+        can: str = "inproc",
+        zenoh: str | None = None,
+        processes: bool = False,
         observers: Sequence[Observer] = (),
         on_record: OnRecord | None = None,
     ) -> None:
         self.config: MachineConfig = load(machine, settings or {})
+        self._closing = ExitStack()
         self.kernel = build.kernel(self.config)
-        self.side = build.machine_side(self.config)
-        self.engine = Engine(self.kernel, LocalLink(self.side), self.side.pending)
+        self.engine = self._engine(machine, settings or {}, can, processes=processes)
         self.engine.observers += observers
         self._tap = _Tap(on_record)
         self.engine.observers.append(self._tap)
+        self._endpoint = zenoh
+        self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
         self._pace = RealPace(self.config.cycle_ns) if pace == "real" else None
         self._plcs = plc_configs(self.config, plc)
         self._up = False
@@ -65,7 +80,8 @@ class Bench:
         self.close()
 
     def close(self) -> None:
-        """End the bench."""
+        """End the bench: processes, sessions, buses."""
+        self._closing.close()
 
     def start_up(self) -> None:
         """Switch on: bring all drives into operation, then start the PLC tasks. `run` does it when needed."""
@@ -92,12 +108,16 @@ class Bench:
         try:
             self.kernel.start(lines, name)
             self.engine.wake()
+            if self._door is not None:
+                self._door.state_changed()
             self._advance(lambda: not self.kernel.channel.running, FOREVER)
         except BaseException:
             self.kernel.reset()
             raise
         finally:
             self._tap.collector = None
+            if self._door is not None:
+                self._door.state_changed()
         cycles = self.engine.cycle - first
         return Result(
             program=name,
@@ -127,25 +147,82 @@ class Bench:
         """Return the actual position of an axis in machine coordinates, mm or degrees."""
         return self.kernel.position_mm(self.config.axis(axis).index)
 
+    def serve(self) -> None:
+        """Stay up: run what clients ask for, until KeyboardInterrupt. Needs `zenoh`.
+
+        In free pace time stands still while no program runs; a client's write lets the cycles pass that it
+        needs to take effect.
+        """
+        door = self._door
+        if door is None:
+            raise InputError("a bench that stays up needs an endpoint (--zenoh)")
+        self.start_up()
+        while True:
+            while door.programs:
+                request = door.programs.pop(0)
+                result_reply(partial(self.run, request.text, request.name or "program"), request)
+            if self._pace is not None or door.waiting:
+                self._advance(lambda: False, self.engine.cycle + 1)
+            else:
+                door.wait(IDLE_S)
+
+    def state(self) -> dict[str, Any]:
+        """Return one look at the bench: CNC mode, axes, drives, terminals, PLCs, late cycles."""
+        return state.look(self.config, self.engine, self._pace.lateness if self._pace else None)
+
     def _advance(self, until: Callable[[], bool], limit: int) -> bool:
-        if self._pace is None:
-            return self.engine.run(until, limit)
         while not until():
             if self.engine.cycle >= limit:
                 return False
-            self._pace.wait()
-            self.engine.step(self.engine.cycle + 1)
+            if self._pace is not None:
+                self._pace.wait()
+            each = self._pace is not None or (self._door is not None and self._door.watched)
+            self.engine.step(self.engine.cycle + 1 if each else limit)
+            if self._door is not None:
+                self._door.after_step()
         return True
+
+    def _engine(
+        self, machine: str | Path, settings: Mapping[str, object], can: str, *, processes: bool
+    ) -> Engine:
+        if can == "inproc" and not processes:
+            side = build.machine_side(self.config)
+            self.terminal_layouts = [terminal.layout for terminal in side.terminals]
+            return Engine(self.kernel, LocalLink(side), side.pending)
+        remote = self._closing.enter_context(RemoteMachine(self.config, machine, settings, can))
+        self.terminal_layouts = list(remote.terminal_layouts)
+        return Engine(self.kernel, remote, remote.pending)
+
+    def _open_door(self, endpoint: str, *, lockstep: bool) -> HliDoor:
+        server = HliServer(endpoint, self.config.name, self.kernel.image.layout, self.terminal_layouts)
+        self._closing.enter_context(server)
+        self._tap.door = HliDoor(server, self.engine, lockstep=lockstep, state=self.state)
+        return self._tap.door
 
     def _attach_plcs(self) -> None:
         for plc in self._plcs:
             if plc.process:
-                raise InputError(f"plc {plc.name}: process = true needs a bench with --zenoh")
+                self._start_plc_process(plc)
+                continue
             script = load_script(plc.script)
             period_us = plc.period_us or script.period_us
-            layouts = [terminal.layout for terminal in self.side.terminals]
-            task = Task(plc.name, script, period_us, self.kernel.image.layout, layouts)
+            task = Task(plc.name, script, period_us, self.kernel.image.layout, self.terminal_layouts)
             self.engine.plcs.append(LocalPlc(task, self.config.cycle_ns))
+
+    def _start_plc_process(self, plc: PlcConfig) -> None:
+        """Start a script as a process of its own and wait until it has attached."""
+        if self._door is None:
+            self._endpoint = free_endpoint()
+            self._door = self._open_door(self._endpoint, lockstep=self._pace is None)
+        assert self._endpoint is not None
+        process = self._closing.enter_context(PlcProcess(plc.script, self._endpoint, plc.name))
+        before = len(self.engine.plcs)
+        for _ in range(ATTACH_WAITS):
+            if len(self.engine.plcs) > before:
+                return
+            process.check()
+            self._door.wait(IDLE_S)
+        raise BenchError(f"plc {plc.name}: {plc.script} has not attached")
 
 
 def plc_configs(config: MachineConfig, scripts: Sequence[str | Path] | None) -> list[PlcConfig]:
@@ -160,6 +237,7 @@ class _Tap:
 
     def __init__(self, on_record: OnRecord | None) -> None:
         self._on_record = on_record
+        self.door: HliDoor | None = None
         self.collector: Collector | None = None
 
     def cycles(self, first: int, count: int) -> None:
@@ -178,12 +256,17 @@ class _Tap:
         """Gather what belongs to the running program."""
         if self.collector is not None:
             self.collector.take(records)
+        if self.door is not None:
+            self.door.emitted(records)
         if self._on_record is not None:
             for record in records:
                 self._on_record(record)
 
     def refused(self, cycle: int, refusals: Sequence[Refusal]) -> None:
-        """Scripts of this process that write what they must not are an error of the set-up."""
+        """Report to clients; without any, a script that writes what it must not is an error of the set-up."""
+        if self.door is not None:
+            self.door.refused(refusals)
+            return
         first = refusals[0]
         raise InputError(f"plc {first.writer}: {first.path}: {first.reason}")
 

@@ -32,7 +32,7 @@ def kernel(config: MachineConfig) -> Kernel:
 
 
 def machine_side(config: MachineConfig) -> MachineSide:
-    """Return the drives, the plant and the terminals of a machine."""
+    """Return the drives, the plant and the terminals of a machine, all in one process."""
     built = plant.build(config.plant, config.channels())
     drives: list[DriveNode] = []
     for axis in config.axes:

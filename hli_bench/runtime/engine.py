@@ -120,6 +120,11 @@ class Engine:
         self._cycle_ns = kernel.setup.cycle_ns
         self._words: bytes = b""
 
+    @property
+    def dc_ns(self) -> Ns:
+        """DC time of the last completed cycle."""
+        return Ns(self.kernel.setup.dc_epoch_ns + self.cycle * self._cycle_ns)
+
     def power_on(self) -> None:
         """Boot the drives and begin the start-up of the kernel."""
         frames = self.link.power_on()
@@ -249,22 +254,23 @@ class Engine:
         due = [plc for plc in self.plcs if self.cycle % plc.period_cycles == 0]
         if not due:
             return
-        dc_ns = Ns(self.kernel.setup.dc_epoch_ns + self.cycle * self._cycle_ns)
         self.kernel.publish()
         io = self.link.images(self.cycle)
-        answers = [(plc, plc.tick(self.cycle, dc_ns, self.kernel.image.data, io)) for plc in due]
+        answers = [(plc, plc.tick(self.cycle, self.dc_ns, self.kernel.image.data, io)) for plc in due]
         for plc, commands in answers:
             if commands is None:
-                self._lose(plc)
+                self.lose(plc.name)
             else:
                 self.apply(commands)
 
-    def _lose(self, plc: PlcPort) -> None:
+    def lose(self, name: str) -> None:
         """A PLC has gone: its units fall back, the CNC reacts as to a PLC stop."""
-        self.plcs.remove(plc)
-        self.lost.append(plc.name)
-        self.access.leave(plc.name)
-        self.kernel.plc_lost(plc.name)
+        if not any(plc.name == name for plc in self.plcs):
+            return
+        self.plcs = [plc for plc in self.plcs if plc.name != name]
+        self.lost.append(name)
+        self.access.leave(name)
+        self.kernel.plc_lost(name)
         self._decide = True
 
     def _tell_frames(self, cycle: int, frames: Sequence[CanFrame]) -> None:

@@ -75,7 +75,7 @@ class MachineSide:
         self.cycle_ns = cycle_ns
         self.sub_steps = sub_steps
         self.dc_epoch_ns = dc_epoch_ns
-        self._signals = signals
+        self.signals = signals
         self._horizon = 0
 
     def power_on(self) -> list[CanFrame]:
@@ -139,6 +139,6 @@ class MachineSide:
         self.rows.edges[0] = 0
         taken: Any = self.rows.edge[:count]
         return [
-            Edge(self._signals[int(row["signal"])], Ns(int(row["at_ns"])), bool(row["level"]))
+            Edge(self.signals[int(row["signal"])], Ns(int(row["at_ns"])), bool(row["level"]))
             for row in taken
         ]

@@ -46,11 +46,13 @@ class MemberWrite:
 class Access:
     """The door to an image: applies writes, remembers whose unit is whose, counts refusals."""
 
-    __slots__ = ("_image", "_owner", "refused")
+    __slots__ = ("_image", "_owner", "_units", "refused")
 
     def __init__(self, image: Image) -> None:
         self._image = image
         self._owner: dict[str, str] = {}
+        groups = image.layout.groups.items()
+        self._units = {path for path, group in groups if any(e.member == "enable_w" for e in group.elements)}
         self.refused = 0
 
     def apply(self, order: Commands | MemberWrite) -> list[Refusal]:
@@ -71,15 +73,16 @@ class Access:
         return self._owner.get(self._image.layout.resolve(unit), "")
 
     def leave(self, plc: str) -> list[str]:
-        """Give up what `plc` owns: enable_w of its units, plc_present_w of its areas become FALSE.
+        """Give up what `plc` owns: enable_w of its units becomes FALSE. Returns the paths of its units.
 
-        Returns the paths of its units. The values it wrote to other members stay (decided here).
+        Only control units have an owner. plc_present_w may be set by several PLCs that share an axis, so it
+        stays, as do the values of other members (decided here).
         """
         owned = [unit for unit, owner in self._owner.items() if owner == plc]
         for unit in owned:
             del self._owner[unit]
             for element in self._image.layout.groups[unit].elements:
-                if element.member in ("enable_w", "plc_present_w"):
+                if element.member == "enable_w":
                     self._image.write(element.id, False)
         return owned
 
@@ -100,7 +103,7 @@ class Access:
         reason = self._against(element, value, writer)
         if reason:
             return Refusal(element.path, reason, writer)
-        if writer:
+        if writer and element.group in self._units:
             self._owner[element.group] = writer
         self._image.write(element.id, value)
         return None

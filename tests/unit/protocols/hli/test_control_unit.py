@@ -127,7 +127,6 @@ def test_when_its_plc_leaves_a_unit_falls_back_to_the_gui(machine: Any) -> None:
     machine.units.sample()
     assert not machine.units[PROBE].redirected
     assert machine.read(f"{PROBE}/enable_w") is False
-    assert machine.read("ax/1/head/plc_present_w") is False
     assert machine.units[PROBE].effective is False
 
 

@@ -1,0 +1,157 @@
+"""The bench's door to the net: what clients ask for over Zenoh, done between cycles."""
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Final
+
+from hli_bench.base.errors import BenchError, InputError
+from hli_bench.base.time import Ns
+from hli_bench.bench.plc_ports import AttachedPlc, period_cycles
+from hli_bench.bench.result import error_of
+from hli_bench.kernel.records import CncError, Emitted
+from hli_bench.protocols.hli.access import Refusal
+from hli_bench.runtime.engine import Engine
+from hli_bench.shells.zenoh_requests import (
+    Attach,
+    FaultOrder,
+    Request,
+    Reset,
+    RunProgram,
+    State,
+    WriteRequest,
+)
+from hli_bench.shells.zenoh_server import HliServer
+
+ANSWER_S: Final = 10.0
+"""Wall time in which an attached PLC must answer in lock-step; a dead one is noticed within the lease (0.5 s)."""
+
+
+class HliDoor:
+    """Serves clients. `after_step` is called after every stretch of cycles, `idle` while no program runs."""
+
+    def __init__(
+        self, server: HliServer, engine: Engine, *, lockstep: bool, state: Callable[[], dict[str, Any]]
+    ) -> None:
+        self._server = server
+        self._engine = engine
+        self._lockstep = lockstep
+        self._state = state
+        self._published = -1
+        self._written: list[tuple[int, WriteRequest]] = []
+        self.programs: list[RunProgram] = []
+        """Programs that clients want to run; the bench takes them when it is idle."""
+
+    @property
+    def watched(self) -> bool:
+        """Somebody listens to the image and no attached PLC sets the pace: it is put every cycle."""
+        return not self._server.attached and self._server.has_image_subscribers()
+
+    @property
+    def waiting(self) -> bool:
+        """A client's write has not taken effect yet."""
+        return bool(self._written)
+
+    def after_step(self) -> None:
+        """Publish the cycle, do what was asked, let go of PLCs that have departed."""
+        engine = self._engine
+        if self._published != engine.cycle:
+            engine.kernel.publish()
+            self.publish(engine.cycle, engine.dc_ns, engine.link.images(engine.cycle))
+        self._acknowledge()
+        for request in self._server.requests():
+            self._serve(request)
+        self._let_go()
+
+    def wait(self, timeout_s: float) -> None:
+        """Wait for something to do while time stands still, and do it."""
+        for request in self._server.wait_request(timeout_s):
+            self._serve(request)
+        self._let_go()
+
+    def publish(self, cycle: int, dc_ns: Ns, io: Mapping[str, bytes]) -> None:
+        """Put terminals, changed units and the image of a cycle, once."""
+        if cycle == self._published:
+            return
+        self._published = cycle
+        image = self._engine.kernel.image
+        self._server.publish(cycle, dc_ns, bytes(image.data), image.take_changed(), io.items())
+
+    def emitted(self, records: Iterable[Emitted]) -> None:
+        """Put error records of the CNC."""
+        for record in records:
+            if isinstance(record, CncError):
+                error = error_of(record)
+                self._server.put_error({name: getattr(error, name) for name in error.__slots__})
+
+    def refused(self, refusals: Iterable[Refusal]) -> None:
+        """Report writes that were refused."""
+        self._server.report(refusals)
+
+    def state_changed(self) -> None:
+        """Put mode and state of the CNC."""
+        self._server.put_state(self._state())
+
+    def _serve(self, request: Request) -> None:
+        match request:
+            case WriteRequest():
+                self._write(request)
+            case Attach():
+                self._attach(request)
+            case RunProgram():
+                if self._engine.kernel.channel.running or self.programs:
+                    request.refuse("a program is running")
+                else:
+                    self.programs.append(request)
+            case Reset():
+                self._engine.kernel.reset()
+                self._engine.wake()
+                request.reply()
+            case State():
+                request.reply(json.dumps(self._state()))
+            case FaultOrder():
+                request.refuse("NotEmulated: faults into a bench that is up")
+            case _:
+                request.refuse("unknown request")
+
+    def _write(self, request: WriteRequest) -> None:
+        refusals = self._engine.access.apply(request.write)
+        if refusals:
+            request.refuse(refusals[0].reason)
+            return
+        self._engine.wake()
+        self._written.append((self._engine.cycle + 1, request))
+
+    def _acknowledge(self) -> None:
+        """Answer the writes that the kernel has seen by now."""
+        while self._written and self._written[0][0] <= self._engine.cycle:
+            self._written.pop(0)[1].reply()
+
+    def _attach(self, request: Attach) -> None:
+        engine = self._engine
+        cycle_ns = engine.kernel.setup.cycle_ns
+        try:
+            cycles = period_cycles(request.plc, request.period_us, cycle_ns)
+        except InputError as error:
+            request.refuse(error.message)
+            return
+        port = AttachedPlc(
+            request.plc, cycles, self._server, self.publish, lockstep=self._lockstep, timeout_s=ANSWER_S
+        )
+        engine.plcs.append(port)
+        request.accept(cycle=engine.cycle, cycle_us=cycle_ns // 1000, lockstep=self._lockstep)
+
+    def _let_go(self) -> None:
+        for plc in self._server.departed():
+            self._engine.lose(plc)
+        while self._engine.lost:
+            self._server.detach(self._engine.lost.pop())
+
+
+def result_reply(run: Callable[[], Any], request: RunProgram) -> None:
+    """Run a client's program and answer with its result, or with what was wrong with it."""
+    try:
+        result = run()
+    except BenchError as error:
+        request.refuse(str(error))
+        return
+    request.reply(json.dumps(result.to_dict()))

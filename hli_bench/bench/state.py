@@ -1,0 +1,58 @@
+"""One look at a bench: what `hli-bench state` and the key `cnc/state` show."""
+
+from typing import Any
+
+from hli_bench.base.units import mm
+from hli_bench.bench.config import MachineConfig
+from hli_bench.runtime.engine import Engine
+from hli_bench.shells.pacing import Lateness
+
+_DRIVE_STATES = (
+    (0x4F, 0x00, "not ready to switch on"),
+    (0x4F, 0x40, "switch on disabled"),
+    (0x6F, 0x21, "ready to switch on"),
+    (0x6F, 0x23, "switched on"),
+    (0x6F, 0x27, "operation enabled"),
+    (0x6F, 0x07, "quick stop active"),
+    (0x4F, 0x0F, "fault reaction active"),
+    (0x4F, 0x08, "fault"),
+)
+
+
+def drive_state(statusword: int) -> str:
+    """Return the CiA 402 state that a statusword shows."""
+    return next((name for mask, value, name in _DRIVE_STATES if statusword & mask == value), "unknown")
+
+
+def look(config: MachineConfig, engine: Engine, lateness: Lateness | None) -> dict[str, Any]:
+    """Return the state of a bench as plain data; positions in mm (degrees)."""
+    kernel = engine.kernel
+    axes = []
+    for axis in config.axes:
+        row = kernel.rows.axis[axis.index]
+        axes.append(
+            {
+                "name": axis.name,
+                "number": axis.number,
+                "command_mm": mm(round(float(row["command"]))),
+                "actual_mm": mm(round(float(row["actual"]))),
+                "lag_mm": mm(round(float(row["lag"]))),
+                "referenced": kernel.core.referenced[axis.index],
+                "drive": drive_state(int(row["statusword"])),
+                "statusword": int(row["statusword"]),
+            }
+        )
+    images = engine.link.images(engine.cycle)
+    return {
+        "machine": config.name,
+        "mode": "automatic",
+        "state": "active" if kernel.channel.running else ("error" if kernel.core.failed else "ready"),
+        "block": kernel.source.number,
+        "cycle": engine.cycle,
+        "dc_ns": int(engine.dc_ns),
+        "axes": axes,
+        "terminals": {name: data.hex() for name, data in images.items()},
+        "plcs": [{"name": plc.name, "period_cycles": plc.period_cycles} for plc in engine.plcs],
+        "late_cycles": lateness.late if lateness else 0,
+        "worst_lateness_us": lateness.worst_ns / 1000 if lateness else 0.0,
+    }

@@ -1,0 +1,44 @@
+"""Terminals as a process of their own: `python -m hli_bench.bench.terminals_process FD MACHINE SETTINGS`.
+
+It is told the edges of a cycle and answers with the process images.
+"""
+
+import json
+import sys
+from collections.abc import Sequence
+
+from hli_bench.base.time import Ns
+from hli_bench.bench import build, telegraph
+from hli_bench.bench.config import load
+from hli_bench.laws.channels import advance_channels
+from hli_bench.laws.rows import MachineRows
+from hli_bench.plant import build as plant
+from hli_bench.shells.processes import worker_pipe
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Build the terminals and serve until the pipe closes."""
+    descriptor, machine, settings = arguments
+    pipe = worker_pipe(descriptor)
+    config = load(machine, json.loads(settings))
+    built = plant.build(config.plant, config.channels())
+    rows: MachineRows = built.rows
+    terminals = build.terminals(config, rows.channel)
+    names = built.signals.names
+    while True:
+        try:
+            _, cycle, body = telegraph.read_order(pipe.receive())
+        except EOFError:
+            return
+        edges = telegraph.read_edges(body, names)
+        for number, edge in enumerate(edges):
+            rows.edge[number]["signal"] = names.index(edge.signal)
+            rows.edge[number]["at_ns"] = edge.at_ns
+            rows.edge[number]["level"] = edge.level
+        now = Ns(cycle * config.cycle_ns)
+        advance_channels(rows.channel, rows.edge, len(edges), now, config.dc_epoch_ns)
+        pipe.send(telegraph.parts(*(terminal.step(now).data for terminal in terminals)))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, Final, TypeVar, cast
+from typing import Any, Final, Literal, TypeVar, cast
 
 from hli_bench.base.errors import InputError, NotEmulated
 from hli_bench.base.ids import AxisIndex, AxisNumber, NodeId
@@ -36,7 +36,8 @@ SUB_STEP_US: Final = 125
 LINEAR_PITCH_MM: Final = 10.0
 ROTARY_PITCH_DEG: Final = 36.0
 BUILT_FAULTS: Final = frozenset({"probe_stuck"})
-KIND_LETTERS: Final[Mapping[AxisType, str]] = {
+AxisKind = Literal["T", "R", "S"]
+KIND_LETTERS: Final[Mapping[AxisType, AxisKind]] = {
     AxisType.TRANSLATOR: "T",
     AxisType.ROTATOR: "R",
     AxisType.SPINDEL: "S",
@@ -58,12 +59,12 @@ class AxisConfig:
     params: AxisParams
 
     @property
-    def kind(self) -> str:
+    def kind(self) -> AxisKind:
         """T (linear), R (rotary) or S (spindle)."""
         return KIND_LETTERS[self.params.kenngr.achs_typ]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class PlcConfig:
     """One PLC task; `period_us` None: what the script says; `process`: it runs in a process of its own."""
 

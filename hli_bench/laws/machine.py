@@ -418,6 +418,6 @@ def advance_machine(
 def servo_span(servo: Rows, axis: int) -> float:
     """Return the way (increments) from the present demand to the newest target, the short way round 32 bits."""
     row = servo[axis]
-    return float(wrap32(np.int64(row["target"]) - int(math.floor(row["demand_from"] + 0.5)))) + (
+    return float(wrap32(int(row["target"]) - int(math.floor(row["demand_from"] + 0.5)))) + (
         math.floor(row["demand_from"] + 0.5) - row["demand_from"]
     )

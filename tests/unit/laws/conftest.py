@@ -31,6 +31,9 @@ PLAIN = {
 }
 
 
+IDEAL = Probe()
+
+
 class Rig:
     """One or more axes under law control; positions in mm, times in ns since start."""
 
@@ -38,7 +41,7 @@ class Rig:
         self,
         axes: Sequence[PlantAxis],
         channels: Sequence[Channel] = (),
-        probe: Probe = Probe(),
+        probe: Probe = IDEAL,
         cycle_ns: int = CYCLE_NS,
         seed: int = 0,
     ) -> None:

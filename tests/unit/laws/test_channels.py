@@ -1,7 +1,8 @@
 """Terminal channels: input delay, DC time latches, continuous and single-event mode, the image at a cycle border."""
 
+from typing import Any
+
 import numpy as np
-import pytest
 
 from hli_bench.laws.machine import channel_edge, channel_image
 from hli_bench.laws.rows import CHANNEL, MachineRows
@@ -90,7 +91,7 @@ def test_edges_further_apart_than_the_delay_all_count() -> None:
     assert _image(rows, 1_000_000) == (1, 0, 2_600, 2_000)
 
 
-def test_input_and_latch_of_a_probed_edge_agree(rig, axis) -> None:
+def test_input_and_latch_of_a_probed_edge_agree(rig: Any, axis: Any) -> None:
 
     bench = rig([axis(face=Face(mm=1.0, material="above"))], [Channel(""), Channel("probe")])
     while not bench.rows.channel[1]["input"]:

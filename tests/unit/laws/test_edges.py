@@ -1,6 +1,7 @@
 """Edges: exact instants between cycles, hysteresis, order, bounce, spread, forced signals."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ def test_crossing_lies_within_the_sub_step_and_on_the_line(before: float, way: f
 
 @pytest.mark.parametrize("velocity", [1.0, 33.333, 250.0])
 @pytest.mark.parametrize("material", ["above", "below"])
-def test_an_edge_is_exact_between_cycles(rig, axis, velocity, material) -> None:
+def test_an_edge_is_exact_between_cycles(rig: Any, axis: Any, velocity: float, material: str) -> None:
     sign = 1.0 if material == "above" else -1.0
     face = sign * (velocity * 0.15 + 0.123456)
     bench = rig([axis(face=Face(mm=face, material=material), probe_inputs=("probe", ""))])
@@ -55,7 +56,7 @@ def test_an_edge_is_exact_between_cycles(rig, axis, velocity, material) -> None:
     assert abs((bench.cycle - 5 + part) * 1_000_000 - at) < 2_000
 
 
-def test_a_cam_has_hysteresis_on_both_sides(rig, axis) -> None:
+def test_a_cam_has_hysteresis_on_both_sides(rig: Any, axis: Any) -> None:
     cam = Cam(from_mm=1.0, to_mm=2.0, hysteresis_um=100.0)
     bench = rig([axis(cam=cam)], [Channel("cam.Z")])
     bench.move(10.0, 300)
@@ -67,7 +68,7 @@ def test_a_cam_has_hysteresis_on_both_sides(rig, axis) -> None:
     assert bench.rows.channel[0]["input"] == 0
 
 
-def _positions_of_edges(bench, velocity: float, cycles: int) -> list[float]:
+def _positions_of_edges(bench: Any, velocity: float, cycles: int) -> list[float]:
     found = []
     for _ in range(cycles):
         before, known, start = bench.mm(), len(bench.edges()), bench.now_ns
@@ -77,7 +78,7 @@ def _positions_of_edges(bench, velocity: float, cycles: int) -> list[float]:
     return found
 
 
-def test_cam_positions(rig, axis) -> None:
+def test_cam_positions(rig: Any, axis: Any) -> None:
     bench = rig([axis(cam=Cam(from_mm=1.0, to_mm=2.0, hysteresis_um=100.0))])
     there = _positions_of_edges(bench, 10.0, 300)
     bench.wait(300)
@@ -86,7 +87,7 @@ def test_cam_positions(rig, axis) -> None:
     assert back == pytest.approx([2.0, 0.9], abs=2e-4)
 
 
-def test_pretravel_goes_into_the_material_and_release_is_at_the_face(rig, axis) -> None:
+def test_pretravel_goes_into_the_material_and_release_is_at_the_face(rig: Any, axis: Any) -> None:
     bench = rig([axis(face=Face(mm=1.0, material="above"))], probe=Probe(pretravel_um=30.0))
     on = _positions_of_edges(bench, 10.0, 150)
     bench.wait(300)
@@ -95,7 +96,7 @@ def test_pretravel_goes_into_the_material_and_release_is_at_the_face(rig, axis) 
     assert off == pytest.approx([1.0], abs=2e-4)
 
 
-def test_all_faces_feed_one_signal(rig, axis) -> None:
+def test_all_faces_feed_one_signal(rig: Any, axis: Any) -> None:
     faces = [axis("X", face=Face(mm=1.0, material="above")), axis("Z", face=Face(mm=-1.0, material="below"))]
     bench = rig(faces)
     bench.move(10.0, 150, axis=0)
@@ -110,7 +111,7 @@ def test_all_faces_feed_one_signal(rig, axis) -> None:
     assert [(s, level) for _, s, level in bench.edges()] == [(0, 1), (0, 0)]
 
 
-def test_bounce_is_a_train_of_edges_that_ends_at_the_new_level(rig, axis) -> None:
+def test_bounce_is_a_train_of_edges_that_ends_at_the_new_level(rig: Any, axis: Any) -> None:
     bench = rig([axis(face=Face(mm=1.0, material="above"))], probe=Probe(bounce_us=2000.0))
     bench.move(10.0, 200)
     edges = bench.edges()
@@ -124,7 +125,7 @@ def test_bounce_is_a_train_of_edges_that_ends_at_the_new_level(rig, axis) -> Non
     assert bench.rows.signal[0]["operated"] == 0
 
 
-def test_spread_is_seeded_and_leaves_without_chatter(rig, axis) -> None:
+def test_spread_is_seeded_and_leaves_without_chatter(rig: Any, axis: Any) -> None:
     def touches(seed: int) -> list[int]:
         bench = rig([axis(face=Face(mm=0.5, material="above"))], probe=Probe(sigma_um=5.0), seed=seed)
         for _ in range(8):
@@ -142,7 +143,7 @@ def test_spread_is_seeded_and_leaves_without_chatter(rig, axis) -> None:
     assert gaps.std() > 0.0
 
 
-def test_a_switch_operated_at_the_start_shows_everywhere(rig, axis) -> None:
+def test_a_switch_operated_at_the_start_shows_everywhere(rig: Any, axis: Any) -> None:
     one = axis(
         cam=Cam(from_mm=-1.0, to_mm=1.0, hysteresis_um=0.0),
         inputs=("", "", "cam.Z", "", "", "", "", ""),
@@ -159,7 +160,7 @@ def test_a_switch_operated_at_the_start_shows_everywhere(rig, axis) -> None:
     assert rows.servo[0]["digital_inputs"] == 0
 
 
-def test_a_forced_signal_changes_at_once_and_ignores_its_switch(rig, axis) -> None:
+def test_a_forced_signal_changes_at_once_and_ignores_its_switch(rig: Any, axis: Any) -> None:
     bench = rig([axis(face=Face(mm=1.0, material="above"))], [Channel("probe")])
     bench.wait(2)
     bench.plant.force("probe", 1)
@@ -174,7 +175,7 @@ def test_a_forced_signal_changes_at_once_and_ignores_its_switch(rig, axis) -> No
     assert bench.rows.signal[0]["level"] == 1
 
 
-def test_edges_of_one_sub_step_come_in_the_order_of_their_instants(rig, axis) -> None:
+def test_edges_of_one_sub_step_come_in_the_order_of_their_instants(rig: Any, axis: Any) -> None:
     cams = [Cam(from_mm=20.0 + shift, to_mm=50.0, hysteresis_um=0.0) for shift in (0.003, 0.001, 0.002)]
     bench = rig([axis(name, cam=cam) for name, cam in zip("XYZ", cams, strict=True)])
     servo = bench.rows.servo

@@ -1,5 +1,8 @@
 """The slope profile: never past the end, never above the feed, rates bounded, two stages, end velocity reached."""
 
+from collections.abc import Iterator
+from itertools import pairwise
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,7 +16,17 @@ feeds = st.floats(2e5, 6e6)
 splits = st.just(0.0) | st.floats(10.0, 5e6)
 
 
-def _run(length, feed, v_end, low, high, down_low, down_high, split, limit=30_000):
+def _run(
+    length: float,
+    feed: float,
+    v_end: float,
+    low: float,
+    high: float,
+    down_low: float,
+    down_high: float,
+    split: float,
+    limit: int = 30_000,
+) -> Iterator[tuple[float, float, float]]:
     """Walk a segment from rest; yield (path, velocity) a cycle."""
     s, v = 0.0, 0.0
     for _ in range(limit):
@@ -26,7 +39,9 @@ def _run(length, feed, v_end, low, high, down_low, down_high, split, limit=30_00
 
 @settings(max_examples=50, deadline=None)
 @given(lengths, feeds, rates, rates, rates, rates, splits)
-def test_to_a_standstill(length, feed, low, high, down_low, down_high, split) -> None:
+def test_to_a_standstill(
+    length: float, feed: float, low: float, high: float, down_low: float, down_high: float, split: float
+) -> None:
     s0, v0 = 0.0, 0.0
     up, down = max(low, high), max(down_low, down_high)
     for s, v, left in _run(length, feed, 0.0, low, high, down_low, down_high, split):
@@ -45,7 +60,7 @@ def test_to_a_standstill(length, feed, low, high, down_low, down_high, split) ->
 @settings(max_examples=40, deadline=None)
 @given(lengths, feeds, rates, st.floats(0.0, 1.0))
 def test_an_end_velocity_is_kept_or_undercut_only_where_it_cannot_be_reached(
-    length, feed, rate, part
+    length: float, feed: float, rate: float, part: float
 ) -> None:
     v_end = feed * part
     reachable = (2.0 * rate * length) ** 0.5
@@ -56,7 +71,9 @@ def test_an_end_velocity_is_kept_or_undercut_only_where_it_cannot_be_reached(
 
 @settings(max_examples=30, deadline=None)
 @given(st.floats(1e4, 1e6), feeds, rates, rates)
-def test_one_cycle_after_the_other_equals_one_long_step(length, feed, up, down) -> None:
+def test_one_cycle_after_the_other_equals_one_long_step(
+    length: float, feed: float, up: float, down: float
+) -> None:
     s, v, elapsed = 0.0, 0.0, 0.0
     for s, v, left in _run(length, feed, 0.0, up, up, down, down, 0.0):  # noqa: B007 - the last one counts
         elapsed += CYCLE - left
@@ -72,7 +89,7 @@ def test_two_stages_have_their_own_rates() -> None:
     states = [(0.0, 0.0)]
     states += [(s, v) for s, v, _ in _run(2e6, 2e6, 0.0, low, high, down_low, down_high, split)]
     changes = {}
-    for (_, before), (_, after) in zip(states, states[1:-1], strict=False):
+    for (_, before), (_, after) in pairwise(states[:-1]):
         if before == after or (before - split) * (after - split) <= 0.0:
             continue
         changes.setdefault((before < split, after > before), set()).add(round((after - before) / CYCLE, -3))
@@ -84,7 +101,7 @@ def test_two_stages_have_their_own_rates() -> None:
 
 @settings(max_examples=40, deadline=None)
 @given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6), rates, st.floats(1e-4, 1e-2))
-def test_a_ramp_never_overshoots(v, wanted, rate, time) -> None:
+def test_a_ramp_never_overshoots(v: float, wanted: float, rate: float, time: float) -> None:
     path, after = ramp(v, wanted, rate, time)
     assert min(v, wanted) <= after <= max(v, wanted)
     assert abs(after - v) <= rate * time * (1 + 1e-9)

@@ -1,6 +1,7 @@
 """Servo and mechanics: following, torque clamp at a fixed stop, friction, following error supervision, 32 bits."""
 
 import math
+from typing import Any
 
 import pytest
 
@@ -9,12 +10,12 @@ from hli_bench.plant.settings import Stop
 PER_MM = 104_857.6
 
 
-def _lag_mm(bench) -> float:
+def _lag_mm(bench: Any) -> float:
     servo = bench.rows.servo[0]
     return (int(servo["demand"]) - int(servo["position"])) / PER_MM
 
 
-def test_a_moving_axis_follows_and_stands_still_where_it_was_told(rig, axis) -> None:
+def test_a_moving_axis_follows_and_stands_still_where_it_was_told(rig: Any, axis: Any) -> None:
     bench = rig([axis()])
     bench.move(100.0, 500)
     assert abs(_lag_mm(bench)) < 1e-3
@@ -26,7 +27,7 @@ def test_a_moving_axis_follows_and_stands_still_where_it_was_told(rig, axis) -> 
 
 
 @pytest.mark.parametrize("side", ["above", "below"])
-def test_the_press_force_at_a_stop_is_the_torque_limit(rig, axis, side) -> None:
+def test_the_press_force_at_a_stop_is_the_torque_limit(rig: Any, axis: Any, side: str) -> None:
     sign = 1.0 if side == "above" else -1.0
     bench = rig([axis(stop=Stop(mm=sign * 2.0, side=side, stiffness_n_per_um=100.0))])
     servo = bench.rows.servo
@@ -46,7 +47,7 @@ def test_the_press_force_at_a_stop_is_the_torque_limit(rig, axis, side) -> None:
     assert sign * _lag_mm(bench) == pytest.approx(3000 * 1e-3 * 100.0 / 60.0 - 2.0, abs=0.02)
 
 
-def test_one_per_cent_of_torque_still_moves_the_axis(rig, axis) -> None:
+def test_one_per_cent_of_torque_still_moves_the_axis(rig: Any, axis: Any) -> None:
     bench = rig([axis()])
     bench.rows.servo["torque_limit_permille"] = 10.0
     bench.move(100.0 / 60.0, 3000)
@@ -54,7 +55,7 @@ def test_one_per_cent_of_torque_still_moves_the_axis(rig, axis) -> None:
     assert bench.mm() == pytest.approx(5.0, abs=1e-3)
 
 
-def test_friction_above_the_limit_holds_the_axis(rig, axis) -> None:
+def test_friction_above_the_limit_holds_the_axis(rig: Any, axis: Any) -> None:
     bench = rig([axis(static_nm=0.62, coulomb_nm=0.5)])
     bench.rows.servo["torque_limit_permille"] = 10.0
     bench.move(1.0, 500)
@@ -62,7 +63,7 @@ def test_friction_above_the_limit_holds_the_axis(rig, axis) -> None:
     assert _lag_mm(bench) == pytest.approx(0.5, abs=1e-3)
 
 
-def test_a_disabled_axis_stands_and_its_demand_follows(rig, axis) -> None:
+def test_a_disabled_axis_stands_and_its_demand_follows(rig: Any, axis: Any) -> None:
     bench = rig([axis()])
     bench.move(100.0, 200)
     bench.rows.servo["enabled"] = 0
@@ -75,7 +76,7 @@ def test_a_disabled_axis_stands_and_its_demand_follows(rig, axis) -> None:
 
 
 @pytest.mark.parametrize(("timeout_ms", "cycles"), [(0, 1), (5, 6), (100, 101)])
-def test_following_error_faults_after_the_time_out(rig, axis, timeout_ms, cycles) -> None:
+def test_following_error_faults_after_the_time_out(rig: Any, axis: Any, timeout_ms: int, cycles: int) -> None:
     bench = rig([axis(static_nm=10.0, coulomb_nm=10.0)])
     servo = bench.rows.servo
     servo["torque_limit_permille"] = 10.0
@@ -96,7 +97,7 @@ def test_following_error_faults_after_the_time_out(rig, axis, timeout_ms, cycles
     assert bench.faults == 1
 
 
-def test_back_inside_the_window_starts_the_time_out_again(rig, axis) -> None:
+def test_back_inside_the_window_starts_the_time_out_again(rig: Any, axis: Any) -> None:
     bench = rig([axis(static_nm=10.0, coulomb_nm=10.0)])
     servo = bench.rows.servo
     servo["torque_limit_permille"] = 10.0
@@ -111,7 +112,7 @@ def test_back_inside_the_window_starts_the_time_out_again(rig, axis) -> None:
 
 
 @pytest.mark.parametrize("window", [0, 0xFFFFFFFF])
-def test_an_open_window_is_not_watched(rig, axis, window) -> None:
+def test_an_open_window_is_not_watched(rig: Any, axis: Any, window: int) -> None:
     bench = rig([axis(static_nm=10.0, coulomb_nm=10.0)])
     bench.rows.servo["torque_limit_permille"] = 10.0
     bench.rows.servo["following_window"] = window
@@ -120,7 +121,7 @@ def test_an_open_window_is_not_watched(rig, axis, window) -> None:
     assert bench.faults == 0
 
 
-def test_positions_wrap_at_32_bits(rig, axis) -> None:
+def test_positions_wrap_at_32_bits(rig: Any, axis: Any) -> None:
     bench = rig([axis(start_mm=20_479.0)])
     servo = bench.rows.servo
     target = int(servo[0]["target"])
@@ -133,7 +134,7 @@ def test_positions_wrap_at_32_bits(rig, axis) -> None:
     assert bench.mm() == pytest.approx(20_479.0 + 40.0, abs=1e-2)
 
 
-def test_a_rotary_axis_presses_its_stop_with_the_same_law(rig, axis) -> None:
+def test_a_rotary_axis_presses_its_stop_with_the_same_law(rig: Any, axis: Any) -> None:
     stop = Stop(mm=10.0, side="above", stiffness_n_per_um=1.0)
     bench = rig([axis("A", rotary=True, pitch_mm=36.0, stop=stop)])
     row = bench.rows.servo[0]
@@ -142,6 +143,6 @@ def test_a_rotary_axis_presses_its_stop_with_the_same_law(rig, axis) -> None:
     assert row["stop_angle"] == pytest.approx(math.radians(100.0))
 
 
-def test_mass_counts_over_the_pitch(rig, axis) -> None:
+def test_mass_counts_over_the_pitch(rig: Any, axis: Any) -> None:
     bench = rig([axis(mass_kg=100.0)])
     assert bench.rows.servo[0]["inertia"] == pytest.approx(3.3e-3 + 100.0 * (0.01 / math.tau) ** 2)

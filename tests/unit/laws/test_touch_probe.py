@@ -1,5 +1,7 @@
 """The drive's touch probe: arming, single and continuous, both edges, the zero pulse."""
 
+from typing import Any
+
 import pytest
 
 from hli_bench.plant.settings import Face
@@ -12,29 +14,29 @@ TURN = 1_048_576
 
 
 @pytest.fixture
-def bench(rig, axis):
+def bench(rig: Any, axis: Any) -> Any:
     return rig([axis(face=Face(mm=1.0, material="above"), probe_inputs=("probe", "probe"))])
 
 
-def _status(bench) -> int:
+def _status(bench: Any) -> int:
     return int(bench.rows.servo[0]["probe_status"])
 
 
-def _latch(bench, slot: int) -> int:
+def _latch(bench: Any, slot: int) -> int:
     return int(bench.rows.servo[0]["latch"][slot])
 
 
-def _touch(bench) -> None:
+def _touch(bench: Any) -> None:
     bench.move(10.0, 120)
     bench.wait(150)
 
 
-def _leave(bench) -> None:
+def _leave(bench: Any) -> None:
     bench.move(-10.0, 120)
     bench.wait(150)
 
 
-def test_single_latches_the_first_edge_until_it_is_armed_again(bench) -> None:
+def test_single_latches_the_first_edge_until_it_is_armed_again(bench: Any) -> None:
     servo = bench.rows.servo
     servo["probe_function"] = SINGLE_POS
     bench.step()
@@ -57,7 +59,7 @@ def test_single_latches_the_first_edge_until_it_is_armed_again(bench) -> None:
     assert _latch(bench, 0) == pytest.approx(PER_MM, abs=1)
 
 
-def test_a_level_that_is_high_at_arming_does_not_fire(bench) -> None:
+def test_a_level_that_is_high_at_arming_does_not_fire(bench: Any) -> None:
     _touch(bench)
     bench.rows.servo["probe_function"] = SINGLE_POS
     bench.wait(10)
@@ -66,7 +68,7 @@ def test_a_level_that_is_high_at_arming_does_not_fire(bench) -> None:
     assert _status(bench) == 0x01
 
 
-def test_continuous_overwrites_and_both_edges_have_their_own_value(bench) -> None:
+def test_continuous_overwrites_and_both_edges_have_their_own_value(bench: Any) -> None:
     bench.rows.servo["probe_function"] = CONTINUOUS_BOTH
     _touch(bench)
     assert _status(bench) == 0x03
@@ -78,7 +80,7 @@ def test_continuous_overwrites_and_both_edges_have_their_own_value(bench) -> Non
     assert _latch(bench, 0) == pytest.approx(PER_MM, abs=1)
 
 
-def test_the_second_input_has_its_own_half_of_the_words(bench) -> None:
+def test_the_second_input_has_its_own_half_of_the_words(bench: Any) -> None:
     bench.rows.servo["probe_function"] = 0x2100
     _touch(bench)
     assert _status(bench) == 0x0100
@@ -93,7 +95,9 @@ def test_the_second_input_has_its_own_half_of_the_words(bench) -> None:
     [(0.0, 50.0, 5.0), (0.0, -50.0, -5.0), (5.0, 50.0, 15.0), (27.3, -50.0, 25.0)],
 )
 @pytest.mark.parametrize("absolute", [True, False])
-def test_the_zero_pulse_is_latched_where_it_is(rig, axis, start_mm, velocity, pulse_mm, absolute) -> None:
+def test_the_zero_pulse_is_latched_where_it_is(
+    rig: Any, axis: Any, start_mm: float, velocity: float, pulse_mm: float, absolute: bool
+) -> None:
     bench = rig([axis(start_mm=start_mm, absolute=absolute)])
     bench.rows.servo["probe_function"] = ZERO_PULSE
     bench.move(velocity, 250)
@@ -103,7 +107,7 @@ def test_the_zero_pulse_is_latched_where_it_is(rig, axis, start_mm, velocity, pu
     assert (_latch(bench, 0) - int(bench.rows.servo[0]["encoder_offset"])) % TURN == TURN // 2
 
 
-def test_an_armed_zero_pulse_ignores_the_input_and_the_other_way_round(bench) -> None:
+def test_an_armed_zero_pulse_ignores_the_input_and_the_other_way_round(bench: Any) -> None:
     bench.rows.servo["probe_function"] = ZERO_PULSE
     _touch(bench)
     assert _status(bench) == 0x01

@@ -1,0 +1,251 @@
+"""The machine folder: the demo, overrides, and every wrong key by file, line, key, value, what is permitted."""
+
+from pathlib import Path
+
+import pytest
+
+from hli_bench.base.errors import InputError, NotEmulated
+from hli_bench.base.loading import data_file
+from hli_bench.bench import schema
+from hli_bench.bench.config import load
+from hli_bench.bench.sources import line_numbers, parse_set
+from hli_bench.plant.settings import Face
+
+FACE = {"plant.probe.Z.face_mm": 100, "plant.probe.Z.material": "below"}
+
+
+def _machine(folder: Path, toml: str, **lists: str) -> Path:
+    (folder / "machine.toml").write_text(toml)
+    for name, text in lists.items():
+        (folder / f"{name}.lis").write_text(text)
+    return folder
+
+
+def test_the_demo_is_what_the_interface_says() -> None:
+    demo = load("demo")
+    assert [axis.name for axis in demo.axes] == ["X", "Y", "Z", "X2", "A", "B", "S"]
+    assert [axis.number for axis in demo.axes] == [axis.node_id for axis in demo.axes] == list(range(1, 8))
+    assert "".join(axis.kind for axis in demo.axes) == "TTTTRRS"
+    assert demo.axis("Z").start_mm == 300.0
+    assert {axis.drive for axis in demo.axes} == {"drives.models.servo402"}
+    assert all(axis.params.kenngr.abs_pos_gueltig for axis in demo.axes)
+    assert all(axis.face is None and axis.stop is None for axis in demo.plant.axes)
+    probe = next(terminal for terminal in demo.terminals if terminal.name == "probe")
+    assert (probe.model, probe.wiring) == ("EL1252", {"ch2": "probe"})
+    assert [(plc.name, plc.period_us, plc.process) for plc in demo.plcs] == [("demo", 1000, False)]
+    assert (demo.name, demo.cycle_ns, demo.sub_steps) == ("demo", 1_000_000, 8)
+    assert demo.dc_epoch_ns == 820_540_800_000_000_000
+    assert demo.notes == ()
+
+
+def test_the_demo_homes_onto_its_zero_pulse() -> None:
+    demo = load("demo")
+    for axis, plant in list(zip(demo.axes, demo.plant.axes, strict=True))[:6]:
+        assert plant.cam is not None
+        assert not plant.cam.from_mm <= axis.start_mm <= plant.cam.to_mm
+        drive = plant.plant
+        reference = axis.params.getriebe[0].pos_refpkt / 10_000
+        turns = reference / drive.pitch_mm - drive.zero_pulse_increments / drive.increments_per_turn
+        assert turns == round(turns)
+        assert 0.0 < plant.cam.to_mm - reference < drive.pitch_mm
+        assert axis.params.getriebe[0].wegaufz == drive.increments_per_turn
+        assert axis.params.getriebe[0].wegaufn == drive.pitch_mm * 10_000
+
+
+@pytest.mark.req("M-165", "M-166")
+def test_the_drive_functions_of_the_demo() -> None:
+    window, torque = load("demo").axis("Z").params.antr.function
+    assert (window.id, window.wr_ident[0], window.data_type) == ("MON_WINDOW", "6065_00", "UNS32")
+    assert (window.scaling_type, window.scaling_factor) == ("UNSCALED", 1.0)
+    assert (window.min_limit, window.max_limit) == (0.0, 4294967295.0)
+    assert (torque.id, torque.wr_ident[0], torque.data_type) == ("TORQUE_LIMIT", "6072_00", "UNS16")
+    assert (torque.scaling_type, torque.scaling_factor) == ("LINEAR", 10.0)
+    assert {window.commu, torque.commu} == {"ACYCLIC"}
+
+
+def test_overrides_of_every_kind() -> None:
+    config = load(
+        "demo",
+        {
+            **FACE,
+            "channel.messtyp": 7,
+            "axis.Z.kenngr.measure.signal": "PLC",
+            "axis.Z.getriebe[0].pos_refpkt": "-1000",
+            "plc.0.process": True,
+            "plant": {"stop": {"X": {"at_mm": 50, "side": "above"}}},
+            "dc_epoch": "2026-01-01T00:00:01Z",
+            "terminal.probe.wiring.ch1": "cam.Z",
+        },
+    )
+    assert config.channel.messtyp == 7
+    assert config.axis("Z").params.kenngr.measure.signal == "PLC"
+    assert config.axis("Z").params.getriebe[0].pos_refpkt == -1000
+    assert config.plcs[0].process
+    assert config.plant.axes[2].face == Face(mm=100.0, material="below")
+    assert config.plant.axes[0].stop is not None
+    assert config.dc_epoch_ns == 820_540_801_000_000_000
+    assert config.terminals[0].wiring == {"ch2": "probe", "ch1": "cam.Z"}
+    assert load("demo", {"plc": []}).plcs == ()
+    assert [plc.name for plc in load("demo", {"plc": [{"script": "demo.py", "name": "one"}]}).plcs] == ["one"]
+
+
+def test_set_texts_are_toml_or_text() -> None:
+    assert parse_set(["plc.0.process=true", "a.b=PLC_TIMESTAMP", "c = 1.5", 'd="x=y"', "e=x=y"]) == {
+        "plc.0.process": True,
+        "a.b": "PLC_TIMESTAMP",
+        "c": 1.5,
+        "d": "x=y",
+        "e": "x=y",
+    }
+    with pytest.raises(InputError, match="--set: 'nothing': expected KEY=VALUE"):
+        parse_set(["nothing"])
+
+
+WRONG = [
+    ({"cycle_us": 1001}, "cycle_us: 1001 is not valid, expected integer 125..20000, a multiple of 125"),
+    ({"cycle_ms": 1}, r"cycle_ms: unknown key \(did you mean cycle_us\?\)"),
+    ({"axis.Q.start_mm": 1}, r"axis.Q.start_mm: 'Q' is not an axis of this machine \(X, Y, Z, X2, A, B, S\)"),
+    ({"axis.Q.kenngr.messachse": 1}, "axis.Q.kenngr.messachse: 'Q' is not an axis"),
+    (
+        {"axis.Z.kenngr.mesachse": 1},
+        r"axis.Z.kenngr.mesachse: unknown parameter \(did you mean kenngr.messachse",
+    ),
+    (
+        {"axis.Z.kenngr.measure.signal": "PCL"},
+        "axis.Z.kenngr.measure.signal: 'PCL' is out of range|not valid",
+    ),
+    ({"channel.messtyp": 9}, r"channel.messtyp: 9 is out of range 1\.\.7"),
+    ({"plant.probe.Z.face_mm": 1}, "plant.probe.Z.face_mm: needs plant.probe.Z.material"),
+    ({**FACE, "plant.probe.Z.material": "left"}, "'left' is not valid, expected one of above, below"),
+    ({"plant.probe.Z.fase_mm": 1}, "did you mean plant.probe.Z.face_mm"),
+    ({"plant.cam.Z.to_mm": -800.0}, r"plant.cam.Z.to_mm: -800.0 is not above from_mm = -700.0"),
+    ({"plant.axis.Z.pitch_mm": 0}, "plant.axis.Z.pitch_mm: 0 is not valid, expected number above 0"),
+    ({"plant.axis.Z.inertia_kg_m2": float("nan")}, "is not valid, expected number"),
+    ({"axis.Z.node_id": 1}, "axis.Z.node_id: 1 is already that of axis X"),
+    ({"axis.Z.kopf.achs_nr": 1}, "axis.Z.kopf.achs_nr: 1 is already that of axis X"),
+    ({"axis.Z.start_mm": 30000}, "axis.Z.start_mm: 30000.0 is beyond the encoder"),
+    ({"axis.Z.probe_input_2": "porbe"}, r"axis.Z.probe_input_2: 'porbe' is not a signal \(probe, cam.X"),
+    ({"axis.Z.input.hom": "cam.Z"}, "'hom' is not one of negative_limit, positive_limit, home"),
+    (
+        {"terminal.probe.model": "EL1253"},
+        "terminal.probe.model: 'EL1253' is not one of EL1008, EL1018, EL1252",
+    ),
+    ({"terminal.probe.wiring.ch3": "probe"}, r"terminal.probe.wiring.ch3: EL1252 has ch1\.\.ch2 only"),
+    ({"terminal.probe.wiring.ch1": "cam.Q"}, "'cam.Q' is not a signal"),
+    (
+        {"terminal.probe.period_us": 1500},
+        "terminal.probe.period_us: 1500 is not a multiple of cycle_us = 1000",
+    ),
+    ({"terminal.probe.mode": "once"}, "expected one of continuous, single_event"),
+    ({"plc.0.script": "none.py"}, "'none.py' is neither in"),
+    ({"plc.0.process": 1}, r"plc\[0\].process: 1 is not valid, expected true or false"),
+    ({"plc.2.script": "demo.py"}, r"plc\[2\]: plc has 2 entries, numbered 0..1"),
+    ({"fault": [{"kind": "fire"}]}, "'fire' is not valid, expected one of frame_loss, node_off"),
+    ({"fault": [{"kind": "probe_stuck", "target": "cam.Q"}]}, r"fault\[0\].target: 'cam.Q' is not a signal"),
+    ({"dc_epoch": "1999-12-31"}, "dc_epoch: '1999-12-31' is not valid, expected instant"),
+    ({"dc_epoch": "soon"}, "dc_epoch: 'soon' is not valid"),
+]
+
+
+@pytest.mark.parametrize(("overrides", "message"), WRONG)
+def test_wrong_overrides(overrides: dict[str, object], message: str) -> None:
+    with pytest.raises(InputError, match=message) as caught:
+        load("demo", overrides)
+    assert "--set: " in str(caught.value) or "plc[2]" in str(caught.value)
+
+
+def test_everything_wrong_is_named_with_file_and_line(tmp_path: Path) -> None:
+    folder = _machine(
+        tmp_path,
+        '# a machine\ncycle_us = "fast"\nchannel.list = "c.lis"\n\n[axis.X]\nlist = "x.lis"\nstart = 3\n'
+        "\n[[plc]]\n\n[[plc]]\nperiod_us = 0\n",
+        c="messtyp 8\n",
+        x="kopf.achs_nr 1\nkenngr.messachs 1\ngetriebe[0].vb_reflow 5000\ngetriebe[0].vb_refmax 4000\n",
+    )
+    with pytest.raises(InputError) as caught:
+        load(folder)
+    lines = str(caught.value).splitlines()
+    places = [line.split(": ")[0] for line in lines]
+    toml, x, c = f"{folder}/machine.toml", f"{folder}/x.lis", f"{folder}/c.lis"
+    assert f"{toml}:2" in places
+    assert f"{toml}:7" in places
+    assert f"{toml}:12" in places
+    assert f"{c}:1:1" in places
+    assert f"{x}:2:1" in places
+    assert f"{x}:3" in places or f"{x}:4" in places
+    assert len(lines) == len(set(lines))
+
+
+def test_a_missing_list_names_the_line_that_asks_for_it(tmp_path: Path) -> None:
+    folder = _machine(tmp_path, '[axis.X]\nlist = "nowhere.lis"\n')
+    with pytest.raises(InputError, match=r"axis\.X\.list: 'nowhere\.lis' is not a readable file") as caught:
+        load(folder)
+    assert (caught.value.file, caught.value.line) == (str(folder / "machine.toml"), 2)
+
+
+def test_broken_toml_names_line_and_column(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="not valid TOML") as caught:
+        load(_machine(tmp_path, "cycle_us = 1000\nseed = = 1\n"))
+    assert (caught.value.line, caught.value.column) == (2, 8)
+
+
+def test_a_machine_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"no machine\.toml there"):
+        load(tmp_path)
+    with pytest.raises(InputError, match="no 'nowhere' in machines/"):
+        load("nowhere")
+    with pytest.raises(InputError, match="no axis"):
+        load(_machine(tmp_path, "seed = 1\n"))
+
+
+def test_a_small_folder_needs_no_list(tmp_path: Path) -> None:
+    config = load(_machine(tmp_path, "[axis.W]\nstart_mm = 1\nkenngr.messachse = 1\n"))
+    axis = config.axis("W")
+    assert (axis.number, axis.node_id, axis.start_mm, axis.params.kenngr.messachse) == (1, 1, 1.0, True)
+    assert (config.terminals, config.plcs, config.faults) == ((), (), ())
+
+
+def test_what_is_not_built_says_so() -> None:
+    with pytest.raises(NotEmulated, match="channel: P-CHAN-00057: messtyp = 3"):
+        load("demo", {"channel.messtyp": 3})
+    with pytest.raises(NotEmulated, match="fault frame_loss"):
+        load("demo", {"fault": [{"kind": "frame_loss"}]})
+    with pytest.raises(NotEmulated, match="at a condition"):
+        load("demo", {"fault": [{"kind": "probe_stuck", "when": "moving"}]})
+
+
+def test_a_stuck_probe_is_a_record() -> None:
+    [fault] = load("demo", {"fault": [{"kind": "probe_stuck", "at_ms": 5, "for_ms": 2.5, "value": 1}]}).faults
+    assert (fault.kind, fault.target, fault.at_ns, fault.until_ns) == (
+        "probe_stuck",
+        "probe",
+        5_000_000,
+        7_500_000,
+    )
+
+
+def test_line_numbers_of_tables_arrays_and_dotted_keys() -> None:
+    text = 'a.b = 1\n[t."x y"]\nk = { m = 1 }\n[[p]]\nq = 1\n[[p]]\nq = 2\n'
+    found = line_numbers(text)
+    assert (found["a.b"], found["t.x y.k"], found["p[0].q"], found["p[1].q"]) == (
+        1,
+        3,
+        5,
+        7,
+    )
+
+
+def test_the_schema_names_every_key_once() -> None:
+    paths = [line.split(": ")[0] for line in schema.lines()]
+    assert len(paths) == len(set(paths))
+    assert {
+        "cycle_us",
+        "plant.stop.<AXIS>.stiffness_n_per_um",
+        "fault[<N>].kind",
+        "axis.<AXIS>.<list path>",
+    } <= set(paths)
+    assert schema.text().endswith("\n")
+
+
+def test_machine_names_lead_to_the_package() -> None:
+    assert data_file("machines", "demo").joinpath("machine.toml").is_file()

@@ -1,0 +1,124 @@
+"""`hli-bench drive show / check`: object dictionaries of drive models and EDS files."""
+
+import argparse
+import pkgutil
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from hli_bench.base.errors import InputError
+from hli_bench.base.loading import data_file, module
+from hli_bench.cli import tables
+from hli_bench.cli.options import Commands
+from hli_bench.protocols.canopen.eds import Entry, ObjectDictionary, load
+
+MODELS: Final = "drives.models"
+CIA402: Final = 402
+DEVICE_TYPE: Final = (0x1000, 0)
+HEADS: Final = ("OBJECT", "NAME", "TYPE", "ACCESS", "PDO", "DEFAULT", "RANGE")
+
+
+def add(commands: Commands) -> None:
+    """Declare the commands."""
+    parser = commands.add_parser("drive", help="object dictionaries of drive models; check EDS files")
+    actions = parser.add_subparsers(dest="action", required=True, title="commands")
+    show = actions.add_parser("show", help="print the object dictionary of a drive model")
+    show.add_argument(
+        "model", metavar="MODEL", help="servo402, or a module path such as drives.models.servo402"
+    )
+    show.set_defaults(execute=show_model)
+    check = actions.add_parser(
+        "check",
+        help="check an EDS file",
+        description="Reads an EDS or DCF, and for a CiA 402 drive looks whether it has the objects that the "
+        "emulated drive needs.",
+    )
+    check.add_argument("files", metavar="FILE.eds", nargs="+")
+    check.set_defaults(execute=check_files)
+
+
+def show_model(arguments: argparse.Namespace) -> int:
+    """Print the object dictionary. Raises InputError for an unknown model."""
+    path = eds_of(arguments.model)
+    for line in tables.lines([HEADS, *map(row, load(path))]):
+        print(line)
+    return 0
+
+
+def eds_of(model: str) -> Path:
+    """Return the EDS of a model by name or module path. Raises InputError."""
+    name = model if "." in model else f"{MODELS}.{model}"
+    try:
+        loaded: Any = module(name)
+    except InputError as error:
+        raise InputError(f"{error.message}; supplied models: {', '.join(supplied_models())}") from error
+    described = getattr(loaded, "MODEL", None)
+    if described is None or not hasattr(loaded, "create"):
+        raise InputError(f"{name} is no drive model: expected MODEL, with the name of its EDS, and create()")
+    return data_file("eds", described.eds)
+
+
+def supplied_models() -> list[str]:
+    """Return the names of the drive models that come with the bench."""
+    return [found.name for found in pkgutil.iter_modules(module(MODELS).__path__)]
+
+
+def row(entry: Entry) -> Sequence[str]:
+    """Return an object as a row of the table."""
+    return (
+        f"{entry.index:04X}:{entry.subindex:02X}",
+        entry.name,
+        entry.data_type.name,
+        str(entry.access),
+        "yes" if entry.pdo_mappable else "",
+        _default(entry),
+        "" if entry.low is None and entry.high is None else f"{_bound(entry.low)}..{_bound(entry.high)}",
+    )
+
+
+def _default(entry: Entry) -> str:
+    if isinstance(entry.default, int) and entry.default_plus_node_id:
+        return f"0x{entry.default:X} + node id"
+    return "" if entry.default is None else str(entry.default)
+
+
+def _bound(limit: int | None) -> str:
+    return "" if limit is None else str(limit)
+
+
+def check_files(arguments: argparse.Namespace) -> int:
+    """Check the files; 2 when one of them is not accepted."""
+    return max([check_file(Path(file)) for file in arguments.files])
+
+
+def check_file(path: Path) -> int:
+    """Print what a file holds or what is wrong with it."""
+    try:
+        described = load(path)
+        lacking = list(missing_objects(described))
+        if lacking:
+            raise InputError(f"a CiA 402 drive needs the objects {', '.join(lacking)}", file=str(path))
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return error.exit_status
+    kind = "CiA 402 drive" if is_402(described) else "CANopen device"
+    print(f"{path}: {kind}, {len(described.names)} objects, {len(described.entries)} entries, accepted")
+    return 0
+
+
+def is_402(described: ObjectDictionary) -> bool:
+    """Tell whether the device type (0x1000, low word) names the drive profile."""
+    if DEVICE_TYPE not in described:
+        return False
+    number = described[DEVICE_TYPE].default
+    return isinstance(number, int) and number & 0xFFFF == CIA402
+
+
+def missing_objects(described: ObjectDictionary) -> Iterator[str]:
+    """Yield the objects that a CiA 402 drive needs and this dictionary lacks, as `6041:00`."""
+    if not is_402(described):
+        return
+    for index, subindex in module("drives.cia402.objects").ALL:
+        if (index, subindex) not in described:
+            yield f"{index:04X}:{subindex:02X}"

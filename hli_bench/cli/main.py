@@ -1,0 +1,62 @@
+"""The command `hli-bench`: parser, dispatch, and how every command ends.
+
+Each command is a module with `add`, which declares it, and `execute`, which returns the exit status. What is heavy
+(the compiler, zenoh, CAN) is imported by `execute`, so that help and checks answer at once.
+"""
+
+import argparse
+import io
+import os
+import sys
+from collections.abc import Sequence
+from typing import Final
+
+from hli_bench.base.errors import BenchError
+from hli_bench.cli import doctor, drive, hli, machine, params, plc, run, serve, state, unbuilt
+
+INTERRUPTED: Final = 130
+"""Exit status after Ctrl-C, as a shell reports it."""
+PIPE_CLOSED: Final = 141
+"""Exit status when nobody reads standard output any more."""
+EPILOG: Final = (
+    "exit status: 0 done (run: M02 or M30), 1 stopped by an error of the CNC, 2 bad input, "
+    "3 this computer cannot serve it, 130 Ctrl-C"
+)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
+    top = argparse.ArgumentParser(
+        prog="hli-bench",
+        description="An emulated CNC with emulated drives and terminals, open to PLC logic over the HLI.",
+        epilog=EPILOG,
+    )
+    commands = top.add_subparsers(dest="command", required=True, title="commands")
+    for module in (run, serve, plc, hli, state, params, drive, machine, unbuilt, doctor):
+        module.add(commands)
+    return top
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command line (default: this process's) and return the exit status."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+    arguments = parser().parse_args(argv)
+    try:
+        status: int = arguments.execute(arguments)
+        sys.stdout.flush()
+    except BenchError as error:
+        print(error, file=sys.stderr)
+        return error.exit_status
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        # What is still buffered must not fail again when the interpreter flushes it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return PIPE_CLOSED
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,136 @@
+"""Options that several commands share, and what their texts mean."""
+
+import argparse
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from hli_bench.base.errors import InputError, NotEmulated
+from hli_bench.base.loading import data_file
+
+Commands = Any
+"""The subparsers action of argparse, whose class is private."""
+
+DEFAULT_MACHINE: Final = "demo"
+DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
+"""Where `serve` listens and clients connect unless told otherwise."""
+NO_PLC: Final = "none"
+BUS: Final = re.compile(r"inproc|socketcan:\S+|socketcand:\S+:\d+")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BenchOptions:
+    """What a command line says about the bench to build; `zenoh` None: not on Zenoh, `plc` None: the machine's."""
+
+    machine: str
+    settings: dict[str, object]
+    plc: list[str] | None
+    pace: str
+    can: str
+    zenoh: str | None
+
+
+def add_bench(parser: argparse.ArgumentParser, *, pace: str, zenoh: str | None) -> None:
+    """Declare the options that say which bench to build, with a command's default pace and endpoint."""
+    bench = parser.add_argument_group("the bench")
+    bench.add_argument(
+        "--machine",
+        metavar="NAME|DIR",
+        help=f"a machine of the package, or a folder (default {DEFAULT_MACHINE})",
+    )
+    bench.add_argument(
+        "--set",
+        metavar="KEY=VALUE",
+        action="append",
+        help="overrides a key of the machine folder, e.g. plant.probe.Z.face_mm=100; repeatable",
+    )
+    bench.add_argument(
+        "--plc",
+        metavar="SCRIPT",
+        action="append",
+        help="replaces the machine's PLC scripts; repeatable; none: no PLC",
+    )
+    bench.add_argument(
+        "--pace",
+        choices=("free", "real"),
+        help=f"as fast as possible and repeatable, or by the clock (default {pace})",
+    )
+    bench.add_argument(
+        "--can",
+        metavar="BUS",
+        type=bus,
+        help="inproc, socketcan:INTERFACE or socketcand:HOST:PORT (default inproc)",
+    )
+    bench.add_argument(
+        "--zenoh",
+        metavar="ENDPOINT",
+        help=f"where the HLI listens, e.g. {DEFAULT_ENDPOINT} (default {zenoh or 'off'})",
+    )
+    bench.add_argument("--modbus", metavar="HOST:PORT", help="serves Modbus TCP there (default off)")
+    parser.set_defaults(default_pace=pace, default_zenoh=zenoh)
+
+
+def add_connect(parser: argparse.ArgumentParser) -> None:
+    """Declare the options that say which bench, of those that are up, is meant."""
+    parser.add_argument(
+        "--connect",
+        metavar="ENDPOINT",
+        default=DEFAULT_ENDPOINT,
+        help="where the bench listens (default %(default)s)",
+    )
+    parser.add_argument(
+        "--machine", metavar="NAME", default="", help="its machine, if several benches are there"
+    )
+
+
+def bus(text: str) -> str:
+    """Return the text of `--can` if it has one of the three forms."""
+    if not BUS.fullmatch(text):
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: expected inproc, socketcan:INTERFACE or socketcand:HOST:PORT"
+        )
+    return text
+
+
+def bench_options(arguments: argparse.Namespace) -> BenchOptions:
+    """Return what the options say. Raises InputError, and NotEmulated for what is not built."""
+    from hli_bench.bench.sources import parse_set
+
+    if arguments.modbus is not None:
+        raise NotEmulated("--modbus")
+    can = arguments.can or "inproc"
+    if can.startswith("socketcand:"):
+        raise NotEmulated(f"--can {can}")
+    return BenchOptions(
+        machine=arguments.machine or DEFAULT_MACHINE,
+        settings=parse_set(arguments.set or []),
+        plc=None if arguments.plc is None else plc_scripts(arguments.plc),
+        pace=arguments.pace or arguments.default_pace,
+        can=can,
+        zenoh=arguments.zenoh or arguments.default_zenoh,
+    )
+
+
+def plc_scripts(texts: list[str]) -> list[str]:
+    """Return the files of `--plc`, none for `none`. Raises InputError."""
+    if texts == [NO_PLC]:
+        return []
+    if NO_PLC in texts:
+        raise InputError(f"{NO_PLC} stands for itself, not beside a script", file="--plc")
+    return [str(supplied_file("plc_scripts", text)) for text in texts]
+
+
+def supplied_file(folder: str, text: str) -> Path:
+    """Return a file by its path or, if there is none, by its name among those supplied in `folder`."""
+    path = Path(text)
+    if path.is_dir():
+        raise InputError("is a folder, expected a file", file=text)
+    if path.is_file():
+        return path
+    if len(path.parts) == 1:
+        try:
+            return data_file(folder, text)
+        except InputError:
+            pass
+    raise InputError(f"no such file, nor one of {folder}/", file=text)

@@ -1,0 +1,182 @@
+"""`hli-bench params show / check`: the sheet of a parameter, and what is wrong with a list file."""
+
+import argparse
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from hli_bench.base.errors import InputError
+from hli_bench.cli import tables
+from hli_bench.cli.options import Commands
+from hli_bench.manual.axis import AxisParams
+from hli_bench.manual.catalogue import Catalogue, catalogue
+from hli_bench.manual.channel import ChannelParams
+from hli_bench.manual.drive_types import DriveType
+from hli_bench.manual.lists import Severity, parse_list, refusals
+from hli_bench.manual.sheet import Effect, Entry
+from hli_bench.manual.trees import build
+
+KINDS: Final[Mapping[str, type[Any]]] = {"axis": AxisParams, "channel": ChannelParams}
+EFFECTS: Final[Mapping[Effect, str]] = {
+    Effect.EMULATED: "emulated",
+    Effect.ACCEPTED: "accepted, changes nothing",
+    Effect.REFUSED: "only the default is accepted, anything else is NotEmulated",
+}
+ARTICLE: Final[Mapping[str, str]] = {"axis": "an axis list", "channel": "a channel list"}
+AXIS_TYPES: Final[Mapping[str, str]] = {"T": "translatory", "R": "rotary", "S": "spindle"}
+BAD: Final = 2
+
+
+def add(commands: Commands) -> None:
+    """Declare the commands."""
+    parser = commands.add_parser("params", help="sheets of axis and channel parameters; check list files")
+    actions = parser.add_subparsers(dest="action", required=True, title="commands")
+    show = actions.add_parser("show", help="print the sheet of a parameter")
+    show.add_argument(
+        "names", metavar="ID-OR-PATH", nargs="+", help="P-AXIS-00516, P-CHAN-00057 or kenngr.measure.signal"
+    )
+    show.set_defaults(execute=show_sheets)
+    check = actions.add_parser(
+        "check",
+        help="check a list file",
+        description="Prints what is wrong with a list file as file:line: text; ends with 2 when there are errors.",
+    )
+    check.add_argument("files", metavar="FILE.lis", nargs="+")
+    check.add_argument("--kind", choices=tuple(KINDS), help="what the list is (default: by its content)")
+    check.set_defaults(execute=check_lists)
+
+
+# -- show -------------------------------------------------------------------------------------------------
+
+
+def show_sheets(arguments: argparse.Namespace) -> int:
+    """Print the sheets, an empty line between them. Raises InputError for an unknown parameter."""
+    for number, (kind, entry) in enumerate([find(name) for name in arguments.names]):
+        if number:
+            print()
+        for line in tables.lines(sheet_rows(kind, entry)):
+            print(line)
+    return 0
+
+
+def find(name: str) -> tuple[str, Entry]:
+    """Return the kind of list and the parameter of a number or path. Raises InputError with the nearest."""
+    known = {kind: catalogue(cls) for kind, cls in KINDS.items()}
+    for kind, found in known.items():
+        entry = found.find(name)
+        if entry is not None:
+            return kind, entry
+    if name.upper().startswith("P-"):
+        raise InputError(f"{name}: unknown parameter, expected P-AXIS-nnnnn, P-CHAN-nnnnn or a list path")
+    reasons = [reason for found in known.values() if (reason := _unknown(found, name))]
+    raise InputError(next((reason for reason in reasons if "did you mean" in reason), reasons[0]))
+
+
+def _unknown(known: Catalogue, name: str) -> str:
+    try:
+        known.locate(name)
+    except InputError as error:
+        return error.message
+    return ""
+
+
+def sheet_rows(kind: str, entry: Entry) -> Iterator[tuple[str, str]]:
+    """Yield the lines of a sheet that say something: (heading, text)."""
+    sheet = entry.sheet
+    rows = {
+        "number": sheet.number or "none printed",
+        "path": entry.path,
+        "list": kind,
+        "meaning": sheet.doc,
+        "type": str(sheet.data_type),
+        "values": sheet.range_text(),
+        "words": ", ".join(f"{word} = {value}" for word, value in sheet.words),
+        "indices": ", ".join(
+            f"{letter} = 0..{size - 1}" for letter, size in zip("ijk", entry.sizes, strict=False)
+        ),
+        "default": _shown(entry.default),
+        "unit": _units(entry) if kind == "axis" else sheet.units.t,
+        "axis types": ", ".join(AXIS_TYPES[letter] for letter in sheet.axis_types) if kind == "axis" else "",
+        "drive types": _drive_types(sheet.drive_types) if kind == "axis" else "",
+        "effect": EFFECTS[sheet.effect],
+        "not emulated": ", ".join(map(str, sheet.not_emulated)),
+        "replaces": ", ".join(map(_named, sheet.replaces)),
+        "replaced by": _named(sheet.replaced_by) if sheet.replaced_by else "",
+        "also spelt": ", ".join(sheet.aliases),
+        "since": sheet.since,
+        "source": sheet.source,
+    }
+    return ((heading, text) for heading, text in rows.items() if text)
+
+
+def _units(entry: Entry) -> str:
+    """Return the unit, for each axis type where they differ."""
+    units = entry.sheet.units
+    by_type = {"T": units.t, "R": units.r, "S": units.s}
+    used = {letter: unit for letter, unit in by_type.items() if letter in entry.sheet.axis_types and unit}
+    if len(set(used.values())) <= 1:
+        return next(iter(used.values()), "")
+    return ", ".join(f"{AXIS_TYPES[letter]} {unit}" for letter, unit in used.items())
+
+
+def _drive_types(types: tuple[DriveType, ...]) -> str:
+    return ", ".join(f"{one.name} ({one.value})" for one in types) or "all"
+
+
+def _named(number: str) -> str:
+    """Return a parameter number with its path."""
+    for cls in KINDS.values():
+        entry = catalogue(cls).find(number)
+        if entry is not None:
+            return f"{number} ({entry.path})"
+    return number
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, bool):
+        return str(int(value))
+    if isinstance(value, int):
+        return str(int(value))
+    return str(value) or "(empty)"
+
+
+# -- check ------------------------------------------------------------------------------------------------
+
+
+def check_lists(arguments: argparse.Namespace) -> int:
+    """Print the findings of all files; 2 when one of them is not accepted."""
+    return max([check_list(Path(file), arguments.kind) for file in arguments.files])
+
+
+def check_list(path: Path, kind: str | None) -> int:
+    """Print the findings of one list and what it is; errors go to standard error. Raises InputError."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", file=str(path)) from error
+    except UnicodeDecodeError as error:
+        raise InputError("is not UTF-8 text", file=str(path)) from error
+    kind = kind or kind_of(text)
+    cls = KINDS[kind]
+    parsed = parse_list(cls, text, str(path))
+    errors = [finding for finding in parsed.findings if finding.severity is Severity.ERROR]
+    for finding in sorted(parsed.findings, key=lambda one: one.line):
+        stream = sys.stderr if finding.severity is Severity.ERROR else sys.stdout
+        print(f"{path}:{finding.line}: {finding.severity}: {finding.message}", file=stream)
+    if errors:
+        return BAD
+    for text in refusals(build(cls, parsed.values)):
+        print(f"{path}: note: NotEmulated: {text}")
+    print(f"{path}: {ARTICLE[kind]} with {len(parsed.values)} parameters, accepted")
+    return 0
+
+
+def kind_of(text: str) -> str:
+    """Return the kind of list that knows more of the names in it; axis when neither does better."""
+    unknown = {kind: _count_unknown(cls, text) for kind, cls in KINDS.items()}
+    return min(unknown, key=lambda kind: unknown[kind])
+
+
+def _count_unknown(cls: type[Any], text: str) -> int:
+    return sum("unknown parameter" in finding.message for finding in parse_list(cls, text).findings)

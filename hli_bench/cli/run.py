@@ -1,0 +1,229 @@
+"""`hli-bench run`: an NC program on a bench of its own, or on one that is up."""
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, closing, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from hli_bench.base.errors import InputError, NotEmulated
+from hli_bench.cli.options import BenchOptions, Commands, add_bench, bench_options, supplied_file
+
+if TYPE_CHECKING:
+    from hli_bench.bench.bench import Bench
+    from hli_bench.bench.result import Result
+    from hli_bench.kernel.records import Emitted
+
+RESULT_KEYS: Final = (
+    "program",
+    "status",
+    "messages",
+    "errors",
+    "variables",
+    "measurements",
+    "homing",
+    "sim_s",
+    "wall_s",
+    "cycles",
+)
+"""What `--result` writes."""
+EXIT_STATUS: Final[Mapping[str, int]] = {"completed": 0, "error": 1, "aborted": 130}
+OUTPUTS: Final = ("result", "trace", "report", "can_log")
+OF_AN_OWN_BENCH: Final = (
+    "machine",
+    "set",
+    "plc",
+    "pace",
+    "can",
+    "zenoh",
+    "modbus",
+    "trace",
+    "report",
+    "can_log",
+)
+"""Options that say nothing about a bench that is up already."""
+
+
+def add(commands: Commands) -> None:
+    """Declare the command."""
+    parser = commands.add_parser(
+        "run",
+        help="run an NC program on a bench of its own",
+        description="Runs an NC program and ends with it. Each #MSG text is a line on standard output; "
+        "errors and warnings of the CNC go to standard error.",
+    )
+    parser.add_argument("program", metavar="PROGRAM.nc", help="a file, or the name of a supplied program")
+    add_bench(parser, pace="free", zenoh=None)
+    parser.add_argument("--connect", metavar="ENDPOINT", help="use the bench that listens there")
+    files = parser.add_argument_group("files to write")
+    files.add_argument(
+        "--result", metavar="FILE.json", help="messages, errors, measured values (mm, degrees)"
+    )
+    files.add_argument("--trace", metavar="FILE", help="the recorded run (MCAP)")
+    files.add_argument("--report", metavar="FILE.html", help="one page with plots")
+    files.add_argument("--can-log", metavar="FILE", help="the CAN frames as candump writes them")
+    parser.set_defaults(execute=execute)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the program and return the exit status."""
+    program = supplied_file("programs", arguments.program)
+    if arguments.connect:
+        return _run_connected(program, arguments)
+    options = bench_options(arguments)
+    if arguments.report is not None:
+        raise NotEmulated("--report")
+    for name in OUTPUTS:
+        prepare(getattr(arguments, name), name)
+    result = _run(program, options, arguments)
+    finish(result.to_dict(), arguments.result)
+    if result.late_cycles:
+        print(f"{result.late_cycles} of {result.cycles} cycles were late", file=sys.stderr)
+    return EXIT_STATUS[result.status]
+
+
+def prepare(file: str | None, option: str) -> None:
+    """Make sure that a file can be written; what an earlier run left there is emptied. Raises InputError."""
+    if file is None:
+        return
+    path = Path(file)
+    existed = path.exists()
+    try:
+        path.open("wb").close()
+        if not existed:
+            path.unlink()
+    except OSError as error:
+        raise InputError(
+            f"--{option.replace('_', '-')}: cannot be written: {error.strerror}", file=file
+        ) from error
+
+
+def finish(result: Mapping[str, Any], file: str | None) -> None:
+    """Write the result file and say on standard error how the run ended."""
+    if file is not None:
+        text = json.dumps({key: result[key] for key in RESULT_KEYS}, indent=2, ensure_ascii=False)
+        Path(file).write_text(text + "\n", encoding="utf-8")
+    print(
+        f"{result['program']}: {result['status']}, {result['sim_s']:.3f} s of machine time "
+        f"in {result['wall_s']:.1f} s, {result['cycles']} cycles",
+        file=sys.stderr,
+    )
+
+
+# -- a bench of its own -----------------------------------------------------------------------------------
+
+
+def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) -> "Result":
+    """Build the bench, run the program with its recorders; Ctrl-C gives an aborted result."""
+    from hli_bench.bench.bench import Bench
+
+    tap = _Tap()
+    with Bench(
+        options.machine,
+        options.settings,
+        plc=options.plc,
+        pace=options.pace,
+        on_record=tap,
+        **_buses(options),
+    ) as bench:
+        for note in bench.config.notes:
+            if note.severity == "warning":
+                print(f"warning: {note}", file=sys.stderr)
+        with _recorders(bench, options, arguments):
+            bench.start_up()
+            first = bench.engine.cycle
+            try:
+                return bench.run(program)
+            except KeyboardInterrupt:
+                return tap.aborted(bench, str(program), bench.engine.cycle - first)
+
+
+def _buses(options: BenchOptions) -> dict[str, Any]:
+    """Return the arguments of a bench that is not alone in this process."""
+    given = {"can": options.can if options.can != "inproc" else None, "zenoh": options.zenoh}
+    return {key: value for key, value in given.items() if value is not None}
+
+
+class _Tap:
+    """Prints what the CNC says as it comes, and keeps it for a run that is interrupted."""
+
+    def __init__(self) -> None:
+        self._records: list[Emitted] = []
+
+    def __call__(self, record: "Emitted") -> None:
+        """Take one record."""
+        from hli_bench.bench.result import error_of
+        from hli_bench.kernel.records import CncError, MessageText
+
+        self._records.append(record)
+        if isinstance(record, MessageText):
+            print(record.text, flush=True)
+        elif isinstance(record, CncError):
+            print(error_of(record), file=sys.stderr, flush=True)
+
+    def aborted(self, bench: "Bench", program: str, cycles: int) -> "Result":
+        """Return the result of a program that Ctrl-C has ended."""
+        from hli_bench.bench.result import Collector, Result, measurements
+
+        collector = Collector(bench.kernel.setup.axes)
+        collector.take(self._records)
+        return Result(
+            program=program,
+            status="aborted",
+            messages=collector.messages,
+            errors=collector.errors,
+            variables=bench.kernel.channel.variables(),
+            measurements=measurements(bench.kernel),
+            homing=collector.homing,
+            sim_s=cycles * bench.config.cycle_ns * 1e-9,
+            wall_s=0.0,
+            cycles=cycles,
+        )
+
+
+@contextmanager
+def _recorders(bench: "Bench", options: BenchOptions, arguments: argparse.Namespace) -> Iterator[None]:
+    """Attach what writes trace and CAN log while the program runs."""
+    setup, log = bench.kernel.setup, bench.kernel.rows.log
+    with ExitStack() as open_files:
+        if arguments.trace is not None:
+            from hli_bench.shells.trace_file import TraceFile
+
+            trace = TraceFile(Path(arguments.trace), setup, log, bench.config.name, options.settings)
+            bench.engine.observers.append(open_files.enter_context(trace))
+        if arguments.can_log is not None:
+            from hli_bench.shells.candump import CandumpLog
+
+            candump = CandumpLog(Path(arguments.can_log), setup, log)
+            bench.engine.observers.append(open_files.enter_context(closing(candump)))
+        yield
+
+
+# -- a bench that is up -----------------------------------------------------------------------------------
+
+
+def _run_connected(program: Path, arguments: argparse.Namespace) -> int:
+    """Let the bench at `--connect` run the program."""
+    for name in OF_AN_OWN_BENCH:
+        if getattr(arguments, name) is not None:
+            option = f"--{name.replace('_', '-')}"
+            raise InputError(f"{option} cannot be chosen for a bench that is up already", file="--connect")
+    prepare(arguments.result, "result")
+    from hli_bench.bench.result import Error
+    from hli_bench.shells.zenoh_client import HliClient
+
+    text = program.read_text(encoding="utf-8", errors="replace")
+    with HliClient(arguments.connect) as client:
+        try:
+            result = client.run(text, program.name)
+        except KeyboardInterrupt:
+            client.reset()
+            raise
+    for message in result["messages"]:
+        print(message["text"], flush=True)
+    for error in result["errors"]:
+        print(Error(**error), file=sys.stderr)
+    finish(result, arguments.result)
+    return EXIT_STATUS[result["status"]]

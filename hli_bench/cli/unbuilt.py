@@ -1,0 +1,45 @@
+"""Commands that are declared and not built: they end with NotEmulated."""
+
+import argparse
+
+from hli_bench.base.errors import NotEmulated
+from hli_bench.cli.options import Commands, add_connect
+
+
+def add(commands: Commands) -> None:
+    """Declare the commands."""
+    inject = _command(commands, "inject", "put a fault into a bench that is up")
+    inject.add_argument("fault", metavar="FAULT", nargs="?", help="kind of fault")
+    inject.add_argument("--at", metavar="WHEN", help="when it begins")
+    inject.add_argument("--for", metavar="TIME", dest="duration", help="how long it lasts")
+    inject.add_argument("--list", action="store_true", help="lists the kinds of faults")
+    add_connect(inject)
+    clear = _command(commands, "clear", "take faults out of a bench that is up")
+    clear.add_argument("fault", metavar="FAULT", nargs="?", help="kind of fault (default all)")
+    add_connect(clear)
+    sweep = _command(commands, "sweep", "many runs over a grid of parameters or random draws")
+    sweep.add_argument("campaign", metavar="CAMPAIGN.toml")
+    _command(commands, "scope", "the web scope")
+    trace = commands.add_parser("trace", help="recorded runs")
+    actions = trace.add_subparsers(dest="action", required=True, title="commands")
+    for name, files, text in (
+        ("show", ("FILE",), "print what a recorded run holds"),
+        ("diff", ("FILE", "OTHER"), "compare two recorded runs"),
+        ("export", ("FILE",), "write a recorded run in another form"),
+    ):
+        action = _command(actions, name, text, command=f"trace {name}")
+        for file in files:
+            action.add_argument(file.lower(), metavar=file)
+
+
+def _command(commands: Commands, name: str, text: str, command: str = "") -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name, help=f"{text} (not built)", description=f"Not built: {text}."
+    )
+    parser.set_defaults(execute=refuse, refused=command or name)
+    return parser
+
+
+def refuse(arguments: argparse.Namespace) -> int:
+    """Say that the command is not built."""
+    raise NotEmulated(f"hli-bench {arguments.refused}")

@@ -7,7 +7,7 @@ from hli_bench.bench.config import MachineConfig
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.setup import AxisSetup, KernelSetup
 from hli_bench.plant import build as plant
-from hli_bench.runtime.machine_side import DriveNode, MachineSide
+from hli_bench.runtime.machine_side import DriveNode, Forced, MachineSide
 from hli_bench.terminals.terminal import Terminal, type_of
 
 
@@ -35,6 +35,7 @@ def machine_side(config: MachineConfig) -> MachineSide:
     """Return the drives, the plant and the terminals of a machine, all in one process."""
     built = plant.build(config.plant, config.channels())
     drives: list[DriveNode] = []
+    # Any: a drive model is a module of the user's choice
     for axis in config.axes:
         model: Any = module(axis.drive)
         drives.append(model.create(axis.name, axis.node_id, built.rows.servo[axis.index], {}))
@@ -47,7 +48,18 @@ def machine_side(config: MachineConfig) -> MachineSide:
         cycle_ns=config.cycle_ns,
         sub_steps=config.sub_steps,
         dc_epoch_ns=config.dc_epoch_ns,
+        forced=forced(config),
     )
+
+
+def forced(config: MachineConfig) -> list[Forced]:
+    """Return the stuck signals that `fault[]` schedules."""
+    found: list[Forced] = []
+    for fault in config.faults:
+        found.append(Forced(fault.at_ns, fault.target, int(fault.value)))
+        if fault.until_ns is not None:
+            found.append(Forced(fault.until_ns, fault.target, None))
+    return found
 
 
 def terminals(config: MachineConfig, channels: Any) -> list[Terminal]:

@@ -1,6 +1,7 @@
 """Plant, drives and terminals as one node group: what stands on the other end of the bus."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any, Final, Protocol
 
 import numpy as np
@@ -14,6 +15,15 @@ from hli_bench.wire.images import ProcessImage
 from hli_bench.wire.signals import Edge
 
 SYNC: Final = CanFrame(0x80)
+
+
+@dataclass(frozen=True, slots=True)
+class Forced:
+    """From `at_ns` on a signal is held at `level`, whatever its switches do; None lets it go."""
+
+    at_ns: Ns
+    signal: str
+    level: int | None
 
 
 class DriveNode(Protocol):
@@ -67,6 +77,7 @@ class MachineSide:
         cycle_ns: int,
         sub_steps: int,
         dc_epoch_ns: int,
+        forced: Sequence[Forced] = (),
     ) -> None:
         self.rows = rows
         self.pending = pending
@@ -77,6 +88,7 @@ class MachineSide:
         self.dc_epoch_ns = dc_epoch_ns
         self.signals = signals
         self._horizon = 0
+        self._forced = sorted(forced, key=lambda one: one.at_ns)
 
     def power_on(self) -> list[CanFrame]:
         """Boot all nodes: their boot-up messages."""
@@ -85,6 +97,10 @@ class MachineSide:
     def advance(self, cycle: int) -> None:
         """Move the machine to the SYNC of `cycle`."""
         rows = self.rows
+        while self._forced and self._forced[0].at_ns <= (cycle - 1) * self.cycle_ns:
+            fault = self._forced.pop(0)
+            level = -1 if fault.level is None else fault.level
+            rows.signal[self.signals.index(fault.signal)]["forced"] = level
         advance_machine(
             rows.servo,
             rows.switch,
@@ -118,6 +134,7 @@ class MachineSide:
                 return 0
             now = Ns((cycle - 1) * self.cycle_ns)
             due = [at for drive in self.drives if (at := drive.next_due(now)) is not None]
+            due += [Ns(fault.at_ns + self.cycle_ns) for fault in self._forced[:1]]
             self._horizon = min((-(-at // self.cycle_ns) for at in due), default=cycle + (1 << 40))
         return max(self._horizon - cycle, 0)
 

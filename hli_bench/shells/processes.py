@@ -73,7 +73,10 @@ class Pipe:
 
     def receive(self) -> bytes:
         """Wait for one message. Raises EOFError when the other side has gone."""
-        head = self._file.read(_LENGTH.size)
+        try:
+            head = self._file.read(_LENGTH.size)
+        except ConnectionError:
+            head = b""
         if len(head) < _LENGTH.size:
             raise EOFError
         return self._file.read(_LENGTH.unpack(head)[0])
@@ -104,7 +107,7 @@ class Worker:
         """Wait for an answer. Raises BenchError when the process has died."""
         try:
             return self.pipe.receive()
-        except (EOFError, ConnectionError) as error:
+        except EOFError as error:
             raise BenchError(f"process {self._name} has ended with status {self._process.wait()}") from error
 
     def close(self) -> None:

@@ -1,7 +1,6 @@
 """The kernel as one node: the order of its cycle, and the only place that brings the stages together."""
 
 from collections.abc import Iterable
-from struct import Struct
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.records import Emitted
 from hli_bench.kernel.sequence import Sequence
 from hli_bench.kernel.setup import KernelSetup
+from hli_bench.laws.publish import publish_positions
 from hli_bench.laws.rows import FOLLOW, KernelRows
 from hli_bench.manual.errors import hli as hli_errors
 from hli_bench.protocols.canopen.sync import sync_frame
@@ -29,9 +29,6 @@ from hli_bench.wire.can import CanFrame
 _TYPE_NUMBER = {"T": 1, "R": 2, "S": 4}
 _LAYOUT_KIND = {"T": "linear", "R": "rotary", "S": "spindle"}
 FULL_OVERRIDE = 1000
-_POSITIONS = Struct("<iii")
-"""Actual position, command position, lag: neighbours in the image, and not worth a message each when they change."""
-_SGN32_LOW, _SGN32_HIGH = -(1 << 31), (1 << 31) - 1
 
 
 class Kernel:
@@ -49,10 +46,10 @@ class Kernel:
         self._monitoring = Monitoring(self.core)
         self.channel = Channel(self.core, self._objects, self._monitoring)
         self._starting: dict[AxisIndex, Sequence[start_up.Drive]] = {}
-        self._positions = [
-            self.image.layout.element(f"ax/{axis.number}/lr_state/active_position_r").offset
-            for axis in setup.axes
-        ]
+        self._image_bytes = np.frombuffer(self.image.data, np.uint8)
+        layout = self.image.layout
+        areas = [f"ax/{axis.number}/lr_state" for axis in setup.axes]
+        self._positions = np.array([layout.element(f"{area}/active_position_r").offset for area in areas])
         self._show_heads()
 
     @property
@@ -73,8 +70,7 @@ class Kernel:
     def begin_start_up(self) -> None:
         """Begin to bring all drives into operation."""
         for axis in self.setup.axes:
-            drive = start_up.Drive(self.core, self._objects, axis.index)
-            self._starting[axis.index] = Sequence(start_up.TABLE, drive, "configure", self.core.watches)
+            self._begin_drive(axis.index, "configure")
 
     def start(self, lines: Iterable[str], name: str) -> None:
         """Begin an NC program. Usage errors of its text come out of `decide`."""
@@ -139,11 +135,14 @@ class Kernel:
         self.channel.abort()
         self._objects.clear()
         self.core.failed = False
+        tripped = self._monitoring.take_tripped()
         for axis in self.setup.axes:
             self.core.show(axis.index, "head/error_r", False)
             if self.core.row(axis.index)["mode"] == FOLLOW:
-                drive = start_up.Drive(self.core, self._objects, axis.index)
-                self._starting[axis.index] = Sequence(start_up.TABLE, drive, "reset", self.core.watches)
+                self._begin_drive(axis.index, "reset")
+            elif axis.index in tripped:
+                self._monitoring.switch_off(axis.index)
+                self._begin_drive(axis.index, "disable")
 
     def plc_lost(self, name: str) -> None:
         """A PLC has gone or frozen: the CNC reacts as to a PLC stop, the program ends with an error."""
@@ -152,14 +151,7 @@ class Kernel:
 
     def publish(self) -> None:
         """Bring the positions on the HLI up to date; called before somebody looks."""
-        axis = self.core.rows.axis
-        data = self.image.data
-        columns = [
-            np.rint(axis[name]).clip(_SGN32_LOW, _SGN32_HIGH).tolist()
-            for name in ("actual", "command", "lag")
-        ]
-        for offset, actual, command, lag in zip(self._positions, *columns, strict=True):
-            _POSITIONS.pack_into(data, offset, int(actual), int(command), int(lag))
+        publish_positions(self.core.rows.axis, self._image_bytes, self._positions)
 
     def position_mm(self, axis: AxisIndex) -> float:
         """Return the actual position of an axis in mm (degrees)."""
@@ -170,21 +162,28 @@ class Kernel:
         """The block in execution."""
         return self.channel.source
 
+    def _begin_drive(self, axis: AxisIndex, phase: str) -> None:
+        if axis in self._starting:
+            self._starting[axis].abort()
+        drive = start_up.Drive(self.core, self._objects, axis)
+        self._starting[axis] = Sequence(start_up.TABLE, drive, phase, self.core.watches)
+        self.core.starting.add(axis)
+
     def _start_drives(self) -> None:
         for axis, sequence in self._starting.items():
             if sequence.ended:
                 continue
             sequence.step()
             if sequence.ended:
+                self.core.starting.discard(axis)
                 self._monitoring.switch_on(axis)
 
     def _drive_lost(self, axis: AxisIndex) -> None:
-        """A drive has dropped out: its set point follows, nothing of the path goes on."""
+        """A drive has dropped out: its set point follows, the others brake with the path."""
         core = self.core
         core.row(axis)["mode"] = FOLLOW
         core.row(axis)["controlword"] = 0
         core.show(axis, "head/error_r", True)
-        core.path.abandon()
 
     def _unit_changed(self, unit: ControlUnit) -> None:
         """A PLC changed a unit that acts by itself; probing and homing ask theirs when they need them."""
@@ -211,7 +210,8 @@ class Kernel:
                 if valid.effective
                 else FULL_OVERRIDE
             )
-            self.core.path.override(int(value) / FULL_OVERRIDE)
+            largest = self.setup.channel.max_vb_override
+            self.core.path.override(min(int(value), largest) / FULL_OVERRIDE)
 
     def _show_heads(self) -> None:
         for axis in self.setup.axes:

@@ -114,11 +114,27 @@ class Engine:
         self.plcs: list[PlcPort] = []
         self.observers: list[Observer] = []
         self.lost: list[str] = []
-        self._pending = pending
         self._orders: list[CanFrame] = []
         self._decide = True
         self._cycle_ns = kernel.setup.cycle_ns
         self._words: bytes = b""
+        self._new_words = True
+        machine, rows = link.rows, kernel.rows
+        self._rows = (
+            rows.axis,
+            rows.path,
+            rows.segment,
+            rows.watch,
+            rows.history,
+            rows.log,
+            machine.servo,
+            machine.switch,
+            machine.signal,
+            machine.channel,
+            machine.edge,
+            machine.edges,
+            pending,
+        )
 
     @property
     def dc_ns(self) -> Ns:
@@ -178,7 +194,7 @@ class Engine:
 
     def _stretch(self, first: int, limit: int) -> int:
         """Return how many cycles from `first` on may be strided over, 0 when frames have to pass."""
-        if self._orders or self._word_bytes() != self._words:
+        if self._orders or self._new_words:
             return 0
         room = min(self.link.quiet(first), limit - self.cycle, LOG_CYCLES)
         for plc in self.plcs:
@@ -193,7 +209,7 @@ class Engine:
 
     def _telegrams(self, cycle: int) -> None:
         """Pass real frames at the SYNC of a cycle."""
-        self._words = self._word_bytes()
+        self._words, self._new_words = self._word_bytes(), False
         orders, self._orders = self._orders, []
         self.kernel.begin_cycle(cycle)
         frames = self.link.telegrams(cycle, [*self.kernel.cyclic_frames(), *orders])
@@ -203,22 +219,9 @@ class Engine:
             self._decide = True
 
     def _stride(self, cycle: int, cycles: int, phase: int) -> tuple[int, int]:
-        kernel, machine = self.kernel.rows, self.link.rows
         stop, self._decide = (self._decide, False) if phase != law.ACT else (False, self._decide)
         result: tuple[int, int] = law.stride(
-            kernel.axis,
-            kernel.path,
-            kernel.segment,
-            kernel.watch,
-            kernel.history,
-            kernel.log,
-            machine.servo,
-            machine.switch,
-            machine.signal,
-            machine.channel,
-            machine.edge,
-            machine.edges,
-            self._pending,
+            *self._rows,
             cycle,
             cycles,
             phase,
@@ -235,6 +238,7 @@ class Engine:
         """Let the kernel decide between sense and act."""
         self.kernel.begin_cycle(cycle)
         self.kernel.decide()
+        self._new_words = self._word_bytes() != self._words
         orders = self.kernel.take_orders()
         self._orders += orders
         self._tell_frames(cycle, orders)

@@ -15,6 +15,8 @@ from hli_bench.wire.images import ProcessImage
 from hli_bench.wire.signals import Edge
 
 SYNC: Final = CanFrame(0x80)
+FAR: Final = 1 << 40
+"""More cycles than any run has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +59,12 @@ class TerminalNode(Protocol):
     """What the bench asks of a terminal."""
 
     @property
+    def period_ns(self) -> int:
+        """Time between refreshes of its image."""
+
+    @property
     def due_ns(self) -> Ns:
-        """Instant of the next refresh of its image."""
+        """Instant of the next refresh."""
 
     def step(self, now_ns: Ns) -> ProcessImage:
         """Return the process image at an instant."""
@@ -88,6 +94,7 @@ class MachineSide:
         self.dc_epoch_ns = dc_epoch_ns
         self.signals = signals
         self._horizon = 0
+        self._slow_terminals = [one for one in terminals if one.period_ns > cycle_ns]
         self._forced = sorted(forced, key=lambda one: one.at_ns)
 
     def power_on(self) -> list[CanFrame]:
@@ -135,7 +142,7 @@ class MachineSide:
             now = Ns((cycle - 1) * self.cycle_ns)
             due = [at for drive in self.drives if (at := drive.next_due(now)) is not None]
             due += [Ns(fault.at_ns + self.cycle_ns) for fault in self._forced[:1]]
-            self._horizon = min((-(-at // self.cycle_ns) for at in due), default=cycle + (1 << 40))
+            self._horizon = min((-(-at // self.cycle_ns) for at in due), default=cycle + FAR)
         return max(self._horizon - cycle, 0)
 
     def images(self, cycle: int) -> list[ProcessImage]:
@@ -145,8 +152,8 @@ class MachineSide:
 
     def image_horizon(self, cycle: int) -> int:
         """Return how many cycles from `cycle` on may pass before a terminal with a longer period refreshes."""
-        slow = [terminal.due_ns for terminal in self.terminals if terminal.due_ns > cycle * self.cycle_ns]
-        return min((-(-due // self.cycle_ns) - cycle + 1 for due in slow), default=1 << 40)
+        slow = [terminal.due_ns for terminal in self._slow_terminals]
+        return min((-(-due // self.cycle_ns) - cycle + 1 for due in slow), default=FAR)
 
     def take_edges(self) -> list[Edge]:
         """Return the edges of all signals since the last call, in order."""

@@ -47,7 +47,7 @@ def type_of(settings: TerminalSettings) -> TerminalType:
 class Terminal:
     """One terminal in operation. `first` is its first row among all channels of the bench."""
 
-    __slots__ = ("_data", "_due_ns", "_period_ns", "_rows", "_type", "layout", "settings")
+    __slots__ = ("_due_ns", "_image", "_period_ns", "_rows", "_state", "_type", "layout", "settings")
 
     def __init__(self, settings: TerminalSettings, channels: Rows, first: int, cycle_ns: int) -> None:
         self.settings = settings
@@ -57,8 +57,14 @@ class Terminal:
         if settings.mode == SINGLE_EVENT and self._period_ns != cycle_ns:
             raise NotEmulated(f"terminal.{settings.name}: single_event with another period than the cycle")
         self._rows = channels[first : first + len(self._type.channels(settings))]
-        self._data = self._type.image(self._rows)
+        self._state = self._rows.tobytes()
+        self._image = ProcessImage(settings.name, self._type.image(self._rows))
         self._due_ns = Ns(self._period_ns)
+
+    @property
+    def period_ns(self) -> int:
+        """Time between refreshes."""
+        return self._period_ns
 
     @property
     def due_ns(self) -> Ns:
@@ -68,6 +74,9 @@ class Terminal:
     def step(self, now_ns: Ns) -> ProcessImage:
         """Return the image at `now_ns`, refreshed when the period has passed."""
         if now_ns >= self._due_ns:
-            self._data = self._type.image(self._rows)
+            state = self._rows.tobytes()
+            if state != self._state:
+                self._state = state
+                self._image = ProcessImage(self.settings.name, self._type.image(self._rows))
             self._due_ns = Ns((now_ns // self._period_ns + 1) * self._period_ns)
-        return ProcessImage(self.settings.name, self._data)
+        return self._image

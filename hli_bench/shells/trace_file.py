@@ -8,17 +8,19 @@ equal runs give equal bytes however they were cut into strides. Decision 0011.
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from struct import Struct
+from struct import error as StructError  # noqa: N812 an exception class in lower case
 from types import TracebackType
 from typing import Any, Final, Self
 
 import numpy as np
-from mcap.exceptions import EndOfFile, InvalidMagic
+from mcap.exceptions import EndOfFile
 from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
-from mcap.writer import CompressionType, Writer
+from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import Ns
@@ -233,7 +235,10 @@ def read(path: Path) -> Iterator[AxesBlock | TraceEvent]:
     schemas: dict[int, Schema] = {}
     channels: dict[int, Channel] = {}
     with path.open("rb") as file:
-        try:
+        if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+            raise InputError("no trace: not an MCAP file", file=str(path))
+        file.seek(0)
+        with suppress(EndOfFile, StructError):
             for record in StreamReader(file).records:
                 if isinstance(record, Schema):
                     schemas[record.id] = record
@@ -242,10 +247,6 @@ def read(path: Path) -> Iterator[AxesBlock | TraceEvent]:
                 elif isinstance(record, Message):
                     channel = channels[record.channel_id]
                     yield _decoded(record, channel.topic, schemas[channel.schema_id])
-        except EndOfFile:
-            return
-        except InvalidMagic as error:
-            raise InputError(f"no trace: {error}", file=str(path)) from error
 
 
 def _decoded(message: Message, topic: str, schema: Schema) -> AxesBlock | TraceEvent:

@@ -38,7 +38,7 @@ class Bus:
         self._orders: list[CanFrame] = []
         self._exchange = link.telegrams
         link.telegrams = self.telegrams
-        link.quiet = lambda cycle: 0
+        link.quiet = lambda _: 0
 
     def telegrams(self, cycle: int, inbox: Sequence[CanFrame]) -> list[CanFrame]:
         """Between two SYNCs: what the drives answered to one, and what the CNC sent in front of the next."""

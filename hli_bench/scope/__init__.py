@@ -1,0 +1,1 @@
+"""Pictures of a run: the report of `--report`, one HTML page that needs nothing else."""

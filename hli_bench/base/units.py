@@ -21,6 +21,11 @@ def tenth_um_per_s(mm_per_min: float) -> float:
     return mm_per_min * TENTH_UM_PER_MM / 60.0
 
 
+def mm_per_min(tenth_um_per_s: float) -> float:
+    """Return a velocity in 0.1 um/s as a feed in mm/min (or degrees/min)."""
+    return tenth_um_per_s * 60.0 / TENTH_UM_PER_MM
+
+
 def tenth_um_from_um_per_s(um_per_s: float) -> float:
     """Return a list velocity (um/s or 0.001 degree/s) in 0.1 um/s (or 0.0001 degree/s)."""
     return um_per_s * 10.0

@@ -1,12 +1,11 @@
 """The NC channel: takes the decoder's items in order, lets motion run ahead, stops at what must wait for it."""
 
 from collections import deque
-from collections.abc import Generator
-from typing import Protocol
+from collections.abc import Generator, Iterable, Mapping
 
 from hli_bench.base.ids import AxisIndex
-from hli_bench.base.time import NS_PER_S
 from hli_bench.base.units import mm
+from hli_bench.kernel.activities import Activity, DriveObject, Dwelling, Measuring
 from hli_bench.kernel.axis_manager.homing_order import HomingOrder
 from hli_bench.kernel.blocks import (
     Block,
@@ -24,35 +23,23 @@ from hli_bench.kernel.blocks import (
 )
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.decoder import Decoder
-from hli_bench.kernel.drive_manager import functions
 from hli_bench.kernel.drive_manager.objects import ObjectChannel
 from hli_bench.kernel.monitoring import Monitoring
-from hli_bench.kernel.path_preparation.dynamics import Ramp
 from hli_bench.kernel.position_controller import measurement
 from hli_bench.kernel.position_controller.measurement import Probe
 from hli_bench.kernel.records import CncError, MeasuredValue, MessageText
-from hli_bench.kernel.sequence import Sequence
-from hli_bench.kernel.watches import cycle_reached, path_done, segment_reached
-from hli_bench.laws.rows import SEGMENTS
+from hli_bench.kernel.watches import cycle_reached, jog_stopped, path_done, segment_reached
+from hli_bench.laws.rows import FOLLOW, SEGMENTS
 from hli_bench.manual.axis.words import Edge, ProbingSignal
 from hli_bench.manual.errors import path_interpolator as errors
 from hli_bench.manual.errors import position_controller as position_errors
-from hli_bench.protocols.canopen.aborts import SdoAbort
 
 Item = Block | Flush | CncError
 Items = Generator[Item, MachineState | None, None]
+READY_CYCLES = 500
+"""Cycles that a program start waits for drives on their way into operation (decided here)."""
 REFILL = SEGMENTS // 2
 """Free segments at which the look-ahead goes on."""
-
-
-class Activity(Protocol):
-    """A block that takes its time while no path runs."""
-
-    def step(self) -> bool:
-        """Go on; tell whether it is done."""
-
-    def abort(self) -> None:
-        """End it where it is."""
 
 
 class Channel:
@@ -70,6 +57,7 @@ class Channel:
         self._activity: Activity | None = None
         self._texts: deque[tuple[int, Text]] = deque()
         self._wake: list[int] = []
+        self._begin_by: int | None = None
         self._error_no_signal = core.setup.channel.meas_error_no_signal
         self._probes: dict[AxisIndex, Probe] = {}
         self._measured: dict[AxisIndex, float] = {}
@@ -82,9 +70,7 @@ class Channel:
 
     def start(self, decoder: Decoder) -> None:
         """Begin a program."""
-        core = self._core
-        core.failed = False
-        core.preparation.synchronise()
+        self._core.failed = False
         self._decoder = decoder
         self._items = decoder.blocks()
         self._answer = None
@@ -93,8 +79,10 @@ class Channel:
         self._measured.clear()
         self._latched.clear()
         self.measured.clear()
+        core = self._core
         self._probes = {axis.index: measurement.default_probe(core, axis.index) for axis in core.setup.axes}
         self._error_no_signal = core.setup.channel.meas_error_no_signal
+        self._begin_by = core.cycle + READY_CYCLES
         self.running = True
         self.completed = False
 
@@ -115,18 +103,32 @@ class Channel:
                 return
 
     def abort(self) -> None:
-        """End the program at once (CNC reset)."""
+        """End the program (CNC reset); what moves is braked, the next program begins when it stands."""
         if self._activity is not None:
             self._activity.abort()
-        self._core.path.abandon()
-        self._core.preparation.synchronise()
+        self._core.path.stop()
         self._end(completed=False)
 
     def _has_failed(self) -> bool:
         return self._core.failed
 
+    def _may_begin(self, begin_by: int) -> bool:
+        """Tell whether the machine stands and its drives are in operation; late drives are not waited for."""
+        core = self._core
+        if not core.at_rest:
+            self._wait_for_rest()
+            return False
+        if core.starting and core.cycle < begin_by:
+            self._wake.append(core.watches.watch(cycle_reached(begin_by)))
+            return False
+        core.preparation.synchronise()
+        self._begin_by = None
+        return True
+
     def _proceed(self) -> bool:
         """Do the next thing; False when it has to wait."""
+        if self._begin_by is not None and not self._may_begin(self._begin_by):
+            return False
         if self._activity is not None:
             if not self._activity.step():
                 return False
@@ -135,7 +137,7 @@ class Channel:
             return self._put(self._postponed)
         if self._barrier is not None:
             if not self._core.path.idle:
-                self._wait_for_path()
+                self._wait_for_rest()
                 return False
             self._hand_out_texts()
             barrier, self._barrier = self._barrier, None
@@ -157,6 +159,8 @@ class Channel:
                 self._hand_out_texts()
             case MeasureSettings():
                 self._set_measuring(item)
+            case DriveWrite(synchronous=False):
+                self._activity = DriveObject.begin(self._core, self._objects, item)
             case CncError():
                 self._core.emitted.append(item)
                 self._core.failed = self._core.failed or item.severity == "error"
@@ -172,7 +176,7 @@ class Channel:
             return False
         self._postponed = None
         self.source = line.source
-        if not self._may_move(line):
+        if not self._may_move(line.source, line.target):
             return True
         self._core.preparation.line(line)
         return True
@@ -186,37 +190,53 @@ class Channel:
             case Flush():
                 self._answer = self._state()
             case MeasuringRun():
-                self._activity = _Measuring.begin(self, item)
+                if self._may_move(item.source, item.target):
+                    self._activity = self._measuring(item)
             case Home():
                 if not item.ranks:
                     core.report(errors.HOMING_WITHOUT_AXES, item.source)
-                else:
-                    self._activity = _Homing(core, self._monitoring, item)
+                elif self._in_operation(item.source, item.ranks):
+                    self._activity = HomingOrder(core, item)
             case DriveWrite():
-                self._activity = _DriveObject.begin(core, self._objects, item)
+                self._activity = DriveObject.begin(core, self._objects, item)
             case Dwell():
-                self._activity = _Dwell(core, item)
+                self._activity = Dwelling(core, item)
             case ProgramEnd():
                 self._end(completed=True)
 
-    def _may_move(self, line: Line) -> bool:
-        """Check what forbids the motion: no reference, software limit switches (monitored after homing only)."""
+    def _measuring(self, block: MeasuringRun) -> Activity | None:
+        run = measurement.begin(self._core, block, self._probes, error_no_signal=self._error_no_signal)
+        return None if run is None else Measuring(self._core, self._monitoring, run, self._take)
+
+    def _in_operation(self, source: Source, axes: Iterable[AxisIndex]) -> bool:
+        """Report the first axis whose drive is out of operation."""
         core = self._core
-        for index, position in line.target.items():
+        for index in axes:
+            if core.row(index)["mode"] == FOLLOW:
+                core.report(position_errors.DRIVE_NOT_ENABLED, source, core.axis(index).number, axis=index)
+                return False
+        return True
+
+    def _may_move(self, source: Source, target: Mapping[AxisIndex, float]) -> bool:
+        """Check what forbids the motion: drive, reference, software limit switches (monitored after homing only)."""
+        core = self._core
+        if not self._in_operation(source, target):
+            return False
+        for index, position in target.items():
             axis = core.axis(index)
             kenngr = axis.params.kenngr
             if not core.referenced[index]:
                 if kenngr.prog_move_requires_homing:
-                    core.report(errors.MOTION_NEEDS_HOMING, line.source, axis.number, axis=index)
+                    core.report(errors.MOTION_NEEDS_HOMING, source, axis.number, axis=index)
                     return False
                 continue
             if kenngr.swe_neg >= kenngr.swe_pos or axis.kind != "T":
                 continue
             if position > mm(kenngr.swe_pos):
-                core.report(errors.POSITIVE_SOFTWARE_LIMIT, line.source, axis.number, axis=index)
+                core.report(errors.POSITIVE_SOFTWARE_LIMIT, source, axis.number, axis=index)
                 return False
             if position < mm(kenngr.swe_neg):
-                core.report(errors.NEGATIVE_SOFTWARE_LIMIT, line.source, axis.number, axis=index)
+                core.report(errors.NEGATIVE_SOFTWARE_LIMIT, source, axis.number, axis=index)
                 return False
         return True
 
@@ -251,8 +271,11 @@ class Channel:
             self._texts.popleft()
             core.emitted.append(MessageText(source=text.source, text=text.text))
 
-    def _wait_for_path(self) -> None:
-        self._wake.append(self._core.watches.watch(path_done()))
+    def _wait_for_rest(self) -> None:
+        watches = self._core.watches
+        if not self._core.path.idle:
+            self._wake.append(watches.watch(path_done()))
+        self._wake += [watches.watch(jog_stopped(axis)) for axis in self._core.self_moving]
 
     def _state(self) -> MachineState:
         core = self._core
@@ -271,13 +294,11 @@ class Channel:
             self._activity.abort()
             self._activity = None
         self._barrier = self._postponed = None
-        if core.path.idle:
-            core.preparation.synchronise()
+        if core.at_rest:
             self._end(completed=False)
             return
-        hold = core.rows.segment[core.path.segment % SEGMENTS]["hold"]
-        core.path.brake(Ramp(float(hold[0]), float(hold[1]), 0.0))
-        self._wait_for_path()
+        core.path.stop()
+        self._wait_for_rest()
 
     def _end(self, *, completed: bool) -> None:
         if self._items is not None:
@@ -291,7 +312,7 @@ class Channel:
         """Return the NC variables that the program set, read or measured, by name."""
         return {} if self._decoder is None else self._decoder.variables(self._state())
 
-    def take(self, run: measurement.Run) -> None:
+    def _take(self, run: measurement.Run) -> None:
         """Keep what a measuring run delivered; axes without a new value keep their old one (M-067)."""
         for axis in run.block.axes:
             self._latched[axis] = run.before_target.get(axis, False)
@@ -300,104 +321,3 @@ class Channel:
         for axis, value in run.values.items():
             pcs = variables[f"V.A.MEAS.PCS.VALUE.{self._core.axis(axis).name}"]
             self.measured.append((value, pcs))
-
-
-class _Measuring:
-    """A G100 block on its way."""
-
-    def __init__(self, channel: Channel, run: measurement.Run) -> None:
-        self._channel = channel
-        self._run = run
-        core = channel._core
-        if run.fixed_stop:
-            self._lag_monitoring(on=False)
-        self._sequence = Sequence(measurement.table(run), run, measurement.arming(run), core.watches)
-
-    @classmethod
-    def begin(cls, channel: Channel, block: MeasuringRun) -> "_Measuring | None":
-        run = measurement.begin(
-            channel._core, block, channel._probes, error_no_signal=channel._error_no_signal
-        )
-        return None if run is None else cls(channel, run)
-
-    def step(self) -> bool:
-        self._sequence.step()
-        if not self._sequence.ended:
-            return False
-        self._done()
-        return True
-
-    def abort(self) -> None:
-        self._sequence.abort()
-        measurement.abort(self._run)
-        self._done()
-
-    def _done(self) -> None:
-        if self._run.fixed_stop:
-            self._lag_monitoring(on=True)
-        self._channel.take(self._run)
-
-    def _lag_monitoring(self, *, on: bool) -> None:
-        for axis in self._run.block.axes:
-            self._channel._monitoring.lag(axis, on=on)
-
-
-class _Homing:
-    """A G74 block on its way; the lag is not monitored while the axis system shifts."""
-
-    def __init__(self, core: Core, monitoring: Monitoring, block: Home) -> None:
-        self._order = HomingOrder(core, block)
-
-    def step(self) -> bool:
-        return self._order.step()
-
-    def abort(self) -> None:
-        self._order.abort()
-
-
-class _DriveObject:
-    """A #DRIVE WR SYN block waiting for the drive's answer."""
-
-    def __init__(self, core: Core, block: DriveWrite) -> None:
-        self._core = core
-        self._block = block
-        self._done = False
-
-    @classmethod
-    def begin(cls, core: Core, objects: ObjectChannel, block: DriveWrite) -> "_DriveObject | None":
-        activity = cls(core, block)
-        accepted = functions.write(core, objects, block, activity._answered)
-        return activity if accepted and block.wait else None
-
-    def step(self) -> bool:
-        return self._done
-
-    def abort(self) -> None:
-        """The order itself goes on in the drive's channel."""
-
-    def _answered(self, refused: SdoAbort | None) -> None:
-        self._done = True
-        if refused is not None:
-            axis = self._core.axis(self._block.axis)
-            self._core.report(
-                position_errors.DRIVE_COMMAND_NOT_SUPPORTED, self._block.source, axis.number, axis=axis.index
-            )
-
-
-class _Dwell:
-    """A G04 block."""
-
-    def __init__(self, core: Core, block: Dwell) -> None:
-        self._core = core
-        cycles = round(block.seconds * NS_PER_S / core.setup.cycle_ns)
-        self._until = core.cycle + cycles
-        self._handle = core.watches.watch(cycle_reached(self._until))
-
-    def step(self) -> bool:
-        if self._core.cycle < self._until:
-            return False
-        self._core.watches.forget(self._handle)
-        return True
-
-    def abort(self) -> None:
-        self._core.watches.forget(self._handle)

@@ -10,7 +10,7 @@ from hli_bench.kernel.path_preparation.preparation import Preparation
 from hli_bench.kernel.records import CncError, Emitted
 from hli_bench.kernel.setup import AxisSetup, KernelSetup
 from hli_bench.kernel.watches import ROOM, Watches
-from hli_bench.laws.rows import Rows, KernelRows
+from hli_bench.laws.rows import JOG, KernelRows, Rows
 from hli_bench.manual.errors import ErrorSheet, Severity
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
 from hli_bench.protocols.hli.image import Image
@@ -32,6 +32,8 @@ class Core:
     emitted: list[Emitted] = field(default_factory=list)
     frames: list[CanFrame] = field(default_factory=list)
     referenced: list[bool] = field(default_factory=list)
+    starting: set[AxisIndex] = field(default_factory=set)
+    """Axes whose drives are on their way into operation."""
     failed: bool = False
     """An error (not a warning) has been emitted since the last program start or reset."""
 
@@ -61,6 +63,21 @@ class Core:
     def dc_now(self) -> Ns:
         """DC time of this cycle."""
         return Ns(self.setup.dc_epoch_ns + self.now)
+
+    @property
+    def self_moving(self) -> list[AxisIndex]:
+        """Axes that move by themselves (homing), not on the path."""
+        row = self.rows.axis
+        return [
+            axis.index
+            for axis in self.setup.axes
+            if row[axis.index]["mode"] == JOG and row[axis.index]["velocity"]
+        ]
+
+    @property
+    def at_rest(self) -> bool:
+        """No set point moves."""
+        return self.path.idle and not self.self_moving
 
     def axis(self, index: AxisIndex) -> AxisSetup:
         """Return the setup of an axis."""

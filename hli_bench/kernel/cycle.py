@@ -170,9 +170,8 @@ class Kernel:
         self.core.starting.add(axis)
 
     def _start_drives(self) -> None:
-        for axis, sequence in self._starting.items():
-            if sequence.ended:
-                continue
+        under_way = [(axis, one) for axis, one in self._starting.items() if not one.ended]
+        for axis, sequence in under_way:
             sequence.step()
             if sequence.ended:
                 self.core.starting.discard(axis)

@@ -18,13 +18,14 @@ _STATE, _FAULT = 0x4F, 0x08
 class Monitoring:
     """Holds the permanent conditions of every axis."""
 
-    __slots__ = ("_core", "_emergency", "_fault", "_lag")
+    __slots__ = ("_core", "_emergency", "_fault", "_lag", "_tripped")
 
     def __init__(self, core: Core) -> None:
         self._core = core
         self._fault: dict[AxisIndex, int] = {}
         self._lag: dict[AxisIndex, tuple[int, int]] = {}
         self._emergency: dict[AxisIndex, int] = {}
+        self._tripped: set[AxisIndex] = set()
 
     def switch_on(self, axis: AxisIndex) -> None:
         """Begin to watch an axis whose drive is in operation."""
@@ -41,14 +42,21 @@ class Monitoring:
         """Switch the position lag monitoring of an axis; off during a run to a fixed stop."""
         for handle in self._lag.pop(axis, ()):
             self._core.watches.forget(handle)
-        gear = self._core.axis(axis).params.getriebe[0]
-        if not on or gear.slep_ueberw_typ != LAG_TYPE:
+        params = self._core.axis(axis).params
+        gear = params.getriebe[0]
+        if not on or gear.slep_ueberw_typ != LAG_TYPE or params.lr_param.suppress_pos_lag_error:
             return
         delay = 1 + gear.pos_lag_mon_error_delay_time * 1000 // self._core.setup.cycle_ns
         self._lag[axis] = (
             self._core.watches.watch(lag_over(axis, gear.slep_max, delay)),
             self._core.watches.watch(standstill_lag_over(axis, gear.slep_min, max(delay, STANDSTILL_CYCLES))),
         )
+
+    def take_tripped(self) -> list[AxisIndex]:
+        """Return the axes that have left their lag limits since the last call."""
+        tripped = sorted(self._tripped)
+        self._tripped.clear()
+        return tripped
 
     def emergency(self, frame: CanFrame) -> None:
         """Keep the code of an EMCY frame for the report of the fault."""
@@ -65,10 +73,13 @@ class Monitoring:
             number, lag = core.axis(axis).number, round(abs(float(row["lag"])))
             if core.watches.met(moving):
                 core.report(errors.POSITION_LAG, source, number, lag, gear.slep_max, axis=axis)
-                self.lag(axis, on=False)
             elif core.watches.met(standing):
                 core.report(errors.POSITION_LAG_AT_STANDSTILL, source, number, lag, gear.slep_min, axis=axis)
-                self.lag(axis, on=False)
+            else:
+                continue
+            self.lag(axis, on=False)
+            self._tripped.add(axis)
+            core.show(axis, "head/error_r", True)
         faulted = [axis for axis, handle in self._fault.items() if core.watches.met(handle)]
         for axis in faulted:
             self.switch_off(axis)

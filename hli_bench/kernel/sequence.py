@@ -1,7 +1,8 @@
 """Sequences as tables: phases with what they set going, what they wait for, and what comes then.
 
 A row waits for a `Condition` (asked by compiled code every cycle) or for a `Level` of a control unit
-(which can only change when a PLC has written). The first of a phase's rows that is met decides.
+(which can only change when a PLC has written). The first of a phase's rows that is met decides. A row that
+leads back to its own phase is used up; the phase goes on with the others, whose conditions stay armed.
 """
 
 from collections.abc import Callable, Mapping
@@ -73,15 +74,23 @@ class Sequence(Generic[Context]):
             met = next((way for way, until in self._armed if self._met(until)), None)
             if met is None:
                 return
-            self._disarm()
-            if met.action is not None:
-                met.action(self._context)
-            self._enter(met.next if isinstance(met.next, str) else met.next(self._context))
+            self._take(met)
 
     def abort(self) -> None:
         """End the sequence where it is."""
-        self._disarm()
+        self._disarm([way for way, _ in self._armed])
         self.phase = END
+
+    def _take(self, met: Then[Context]) -> None:
+        """Go the way that was met."""
+        if met.action is not None:
+            met.action(self._context)
+        phase = met.next if isinstance(met.next, str) else met.next(self._context)
+        if phase == self.phase:
+            self._disarm([met])
+        else:
+            self._disarm([way for way, _ in self._armed])
+            self._enter(phase)
 
     def _met(self, until: int | Level) -> bool:
         return until.holds() if isinstance(until, Level) else self._watches.met(until)
@@ -97,8 +106,12 @@ class Sequence(Generic[Context]):
             armed = until if isinstance(until, Level) else self._watches.watch(until)
             self._armed.append((way, armed))
 
-    def _disarm(self) -> None:
-        for _, until in self._armed:
-            if not isinstance(until, Level):
+    def _disarm(self, ways: list[Then[Context]]) -> None:
+        """Take the conditions of these ways back."""
+        kept = []
+        for way, until in self._armed:
+            if way not in ways:
+                kept.append((way, until))
+            elif not isinstance(until, Level):
                 self._watches.forget(until)
-        self._armed.clear()
+        self._armed = kept

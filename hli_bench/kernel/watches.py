@@ -59,6 +59,11 @@ def fixed_stop(axis: int, lag: float, window: float, cycles: int, from_path: int
     )
 
 
+def moved(axis: int, way_tenth_um: float, from_tenth_um: float) -> Condition:
+    """The axis is at least `way_tenth_um` away from a position."""
+    return Condition(kind=law.W_MOVED, axis=axis, limit=way_tenth_um, window=from_tenth_um)
+
+
 def probe_status(axis: int, mask: int, value: int) -> Condition:
     """Bits of the drive's touch probe status."""
     return Condition(kind=law.W_PROBE_STATUS, axis=axis, mask=mask, value=value)

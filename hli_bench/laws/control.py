@@ -1,4 +1,4 @@
-"""Kernel side of a cycle: `sense` takes actual values, keeps the history and asks the conditions; `act` interpolates."""
+"""Kernel side of a cycle: `sense` takes actual values, keeps history and asks the conditions; `act` interpolates."""
 
 import math
 
@@ -18,6 +18,7 @@ from hli_bench.laws.rows import (
     W_JOG_STOPPED,
     W_LAG_OVER,
     W_LAG_WITHIN,
+    W_MOVED,
     W_NONE,
     W_PATH_DONE,
     W_PROBE_STATUS,
@@ -59,7 +60,7 @@ def moved_within(axis: Rows, history: Rows, number: int, cycles: int, cycle: int
 
 
 @law
-def holds(axis: Rows, path: Rows, watch: Rows, history: Rows, number: int, cycle: int) -> bool:
+def holds(axis: Rows, path: Rows, watch: Rows, number: int, cycle: int) -> bool:
     """Return whether condition `number` holds in this cycle."""
     row = watch[number]
     kind = row["kind"]
@@ -84,17 +85,24 @@ def holds(axis: Rows, path: Rows, watch: Rows, history: Rows, number: int, cycle
         return (one["statusword"] & row["mask"]) == row["value"]
     if kind == W_DIGITAL_INPUT:
         return (one["digital_inputs"] & row["mask"]) == row["value"]
+    if kind == W_MOVED:
+        # window: where the way begins
+        return abs(one["actual"] - row["window"]) >= row["limit"]
     if kind == W_FIXED_STOP:
-        # limit: position lag, 0 = not asked; window: greatest way in `cycles`, < 0 = not asked
-        if row["limit"] > 0.0 and abs(one["lag"]) <= row["limit"]:
-            return False
-        if (
-            row["window"] >= 0.0
-            and moved_within(axis, history, row["axis"], row["cycles"], cycle) > row["window"]
-        ):
-            return False
-        return path[0]["s"] >= row["value"]
+        # limit: position lag, 0 = not asked
+        return (row["limit"] <= 0.0 or abs(one["lag"]) > row["limit"]) and path[0]["s"] >= row["value"]
     return False
+
+
+@law
+def lasted(axis: Rows, watch: Rows, history: Rows, number: int, cycle: int) -> bool:
+    """Return whether condition `number` has held long enough; a fixed stop asks how far the axis moved meanwhile."""
+    row = watch[number]
+    if row["count"] < row["cycles"]:
+        return False
+    if row["kind"] != W_FIXED_STOP or row["window"] < 0.0:
+        return True
+    return moved_within(axis, history, row["axis"], row["cycles"], cycle) <= row["window"]
 
 
 @law
@@ -105,11 +113,11 @@ def ask_watches(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) 
         row = watch[w]
         if row["kind"] == W_NONE:
             continue
-        if not holds(axis, path, watch, history, w, cycle):
+        if not holds(axis, path, watch, w, cycle):
             row["count"] = 0
             continue
         row["count"] += 1
-        if row["count"] >= row["cycles"] and row["fired"] == 0:
+        if row["fired"] == 0 and lasted(axis, watch, history, w, cycle):
             row["fired"] = 1
             fired += 1
     return fired

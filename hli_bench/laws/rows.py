@@ -21,6 +21,8 @@ SEGMENTS: Final = 64
 """Depth of the ring of prepared path segments."""
 EDGES: Final = 256
 """Edges that one stride can report; a stride ends when the ring is nearly full."""
+SUB_STEPS: Final = 160
+"""Greatest number of sub-steps in a cycle."""
 NOISE: Final = 1024
 """Pre-drawn random trigger offsets of a switch, used cyclically."""
 
@@ -48,6 +50,7 @@ W_STATUSWORD: Final = 8
 W_DIGITAL_INPUT: Final = 9
 W_CYCLE: Final = 10
 W_STANDSTILL_LAG_OVER: Final = 11
+W_MOVED: Final = 12
 
 AXIS: Final = np.dtype(
     [
@@ -127,7 +130,9 @@ SERVO: Final = np.dtype(
         ("probe_signal", "i4", (2,)),
         ("input_signal", "i4", (8,)),
         ("probe_function_seen", "u2"),
-        ("angle_before", "f8"),  # rad, start of the sub-step (edges interpolate from it)
+        ("angle_low", "f8"),  # rad, least and greatest angle of the cycle
+        ("angle_high", "f8"),
+        ("angles", "f8", (SUB_STEPS + 1,)),  # rad, at the borders of the cycle's sub-steps
     ],
     align=True,
 )
@@ -284,7 +289,7 @@ class MachineRows:
     channel: Rows
     edge: Rows
     edges: NDArray[np.int64]
-    """Shape (1,): how many entries of `edge` are filled."""
+    """Shape (2,): how many entries of `edge` are filled, and how many changes of signals are pending."""
 
     @classmethod
     def allocate(cls, axes: int, switches: int, signals: int, channels: int) -> "MachineRows":
@@ -295,7 +300,7 @@ class MachineRows:
             signal=np.zeros(signals, SIGNAL),
             channel=np.zeros(channels, CHANNEL),
             edge=np.zeros(EDGES, EDGE),
-            edges=np.zeros(1, np.int64),
+            edges=np.zeros(2, np.int64),
         )
         rows.servo["probe_signal"] = -1
         rows.servo["input_signal"] = -1

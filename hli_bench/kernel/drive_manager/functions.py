@@ -11,6 +11,7 @@ from hli_bench.kernel.blocks import DriveWrite
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.drive_manager.objects import Done, ObjectChannel, Order
 from hli_bench.manual.axis.antr import Function
+from hli_bench.manual.axis.fixed_stop import NO_LIMIT
 from hli_bench.manual.axis.words import Communication, ObjectDataType, ScalingType
 from hli_bench.manual.errors import position_controller as errors
 
@@ -47,8 +48,9 @@ def write(core: Core, channel: ObjectChannel, block: DriveWrite, done: Done) -> 
 
 
 def scaled(function: Function, value: float) -> int:
-    """Return the raw value: limited without a message, times the factor with LINEAR scaling."""
-    limited = min(max(value, function.min_limit), function.max_limit)
+    """Return the raw value: limited without a message (NO_LIMIT: not), times the factor with LINEAR scaling."""
+    low = function.min_limit if function.min_limit < NO_LIMIT else value
+    limited = min(max(value, low), function.max_limit)
     factor = function.scaling_factor if function.scaling_type is ScalingType.LINEAR else 1.0
     return round(limited * factor)
 

@@ -80,6 +80,12 @@ def _state(mask: int, value: int) -> Callable[[Drive], Until]:
     return reached
 
 
+def _follow(drive: Drive) -> None:
+    """Take the drive out of operation, so that its set point can take up the actual position."""
+    drive.core.row(drive.axis)["mode"] = FOLLOW
+    drive.core.row(drive.axis)["controlword"] = _SHUTDOWN
+
+
 def _in_operation(drive: Drive) -> None:
     drive.core.row(drive.axis)["mode"] = PATH
     drive.core.show(drive.axis, "lr_state/ready_for_power_on_r", True)
@@ -92,8 +98,9 @@ TABLE: Final[Table[Drive]] = {
     "reset": Phase(
         _controlword(_FAULT_RESET), (Then(_state(_NOT_OPERATION, _SWITCH_ON_DISABLED), "shut down"),)
     ),
+    "disable": Phase(_follow, (Then(_state(_STATE, 0x21), "switch on"),)),
     "shut down": Phase(_controlword(_SHUTDOWN), (Then(_state(_STATE, 0x21), "switch on"),)),
     "switch on": Phase(_controlword(_SWITCH_ON), (Then(_state(_STATE, 0x23), "enable"),)),
     "enable": Phase(_controlword(_ENABLE_OPERATION), (Then(_state(_STATE, 0x27), END, _in_operation),)),
 }
-"""From power-on (`configure`) or a fault (`reset`) to operation enabled."""
+"""From power-on (`configure`), a fault (`reset`) or operation itself (`disable`) to operation enabled."""

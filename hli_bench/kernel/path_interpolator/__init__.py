@@ -1,7 +1,7 @@
 """The running path: hold, override, brake. Its numbers are walked by the compiled `act`."""
 
 from hli_bench.kernel.path_preparation.dynamics import Ramp
-from hli_bench.laws.rows import BRAKE, IDLE, KernelRows
+from hli_bench.laws.rows import BRAKE, IDLE, SEGMENTS, KernelRows
 
 
 class Path:
@@ -44,9 +44,9 @@ class Path:
         """Set the feed override, 1.0 = as programmed."""
         self._rows.path[0]["override"] = factor
 
-    def abandon(self) -> None:
-        """Stop at once and forget what is prepared (the set points stay where they are)."""
-        path = self._rows.path[0]
-        path["state"] = IDLE
-        path["v"] = 0.0
-        path["head"] = max(int(path["tail"]) - 1, 0)
+    def stop(self) -> None:
+        """Brake as at feedhold and drop the distance to go."""
+        hold = self._rows.segment[self.segment % SEGMENTS]["hold"]
+        self.brake(
+            Ramp(float(hold[0]), float(hold[1]), float(self._rows.segment[self.segment % SEGMENTS]["split"]))
+        )

@@ -1,5 +1,6 @@
 """Which accelerations act in which block: G00, G01, feedhold, and the table of a measuring run."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -23,6 +24,13 @@ class Ramp:
     low: float
     high: float
     split: float
+
+    def velocity_over(self, way: float) -> float:
+        """Return the velocity that this ramp takes to standstill over `way` (0.1 um)."""
+        below = self.split**2 / (2.0 * self.low)
+        if way <= below:
+            return math.sqrt(2.0 * self.low * way)
+        return math.sqrt(self.split**2 + 2.0 * self.high * (way - below))
 
 
 @dataclass(frozen=True, slots=True)

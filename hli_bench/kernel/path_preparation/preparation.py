@@ -43,18 +43,18 @@ class Preparation:
     def line(self, block: Line) -> int | None:
         """Put a block of straight motion; return its segment number, None when it moves nothing."""
         sets = self._rapid if block.rapid else self._feed
-        return self._put(block.target, block.feed, sets, rapid=block.rapid)
+        return self._put(block.target, tenth_um_per_s(block.feed), sets, rapid=block.rapid)
 
     def measuring_run(
-        self, block: MeasuringRun, offsets: Mapping[AxisIndex, float]
+        self, block: MeasuringRun, feed: float, offsets: Mapping[AxisIndex, float]
     ) -> tuple[int, float] | None:
-        """Put a measuring run; return (segment number, path to the programmed target in 0.1 um).
+        """Put a measuring run with `feed` (0.1 um/s); return (segment number, path to the target in 0.1 um).
 
         `offsets` (0.1 um) is how far past the target an axis may go while nothing was probed
         (P-AXIS-00467). Returns None when the block moves nothing.
         """
         sets = [profile for profile, _ in self._measuring]
-        number = self._put(block.target, block.feed, sets, rapid=False)
+        number = self._put(block.target, feed, sets, rapid=False)
         if number is None:
             return None
         segment = self._rows.segment[number % SEGMENTS]
@@ -65,6 +65,16 @@ class Preparation:
             segment["length"] = length + beyond
             segment["end"] = segment["end"] + segment["direction"] * beyond
         return number, length
+
+    def limit_feed(self, number: int, stroke: float) -> tuple[float, float]:
+        """Lower the feed of measuring run `number` so that it brakes within `stroke` (0.1 um).
+
+        Returns the feed before and after (0.1 um/s).
+        """
+        segment = self._rows.segment[number % SEGMENTS]
+        before = float(segment["feed"])
+        segment["feed"] = min(before, self.brake_ramp(number).velocity_over(stroke))
+        return before, float(segment["feed"])
 
     def brake_ramp(self, number: int) -> Ramp:
         """Return the deceleration after the probing event along segment `number`."""
@@ -77,11 +87,12 @@ class Preparation:
     def retraction(self, target: Mapping[AxisIndex, float], velocity: float) -> int | None:
         """Put a straight way to `target` (0.1 um, ACS) with `velocity` (0.1 um/s): relief after a fixed stop."""
         millimetres = {axis: position / TENTH_UM_PER_MM for axis, position in target.items()}
-        return self._put(millimetres, velocity * 60.0 / TENTH_UM_PER_MM, self._feed, rapid=False)
+        return self._put(millimetres, velocity, self._feed, rapid=False)
 
     def _put(
         self, target: Mapping[AxisIndex, float], feed: float, sets: Sequence[Dynamics], *, rapid: bool
     ) -> int | None:
+        """Put a segment; `feed` in 0.1 um/s."""
         end = self._end.copy()
         for axis, position in target.items():
             end[axis] = position * TENTH_UM_PER_MM
@@ -93,7 +104,7 @@ class Preparation:
         direction = np.where(moves, way / length, 0.0)
         moved = np.flatnonzero(moves)
         may = dynamics.along([sets[int(i)] for i in moved], [float(direction[i]) for i in moved])
-        velocity = may.limit if rapid else min(tenth_um_per_s(feed), may.limit)
+        velocity = may.limit if rapid else min(feed, may.limit)
         path = self._rows.path[0]
         number = int(path["tail"])
         segment = self._rows.segment[number % SEGMENTS]

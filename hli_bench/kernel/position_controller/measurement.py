@@ -3,28 +3,33 @@
 Source: measurement manual 4 (every moved axis delivers), 7.2 (fixed stop), P-CHAN-00176, P-CHAN-00266.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Final
 
 from hli_bench.base.ids import AxisIndex
-from hli_bench.base.units import tenth_um_per_s
+from hli_bench.base.time import Ns
+from hli_bench.base.units import mm_per_min, tenth_um_from_um_per_s, tenth_um_per_s
 from hli_bench.kernel.blocks import MeasuringRun
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.position_controller import probing
 from hli_bench.kernel.records import MeasuredValue
 from hli_bench.kernel.sequence import END, Phase, Table, Then, Until, always
 from hli_bench.kernel.watches import Condition, cycle_reached, path_done
+from hli_bench.laws.rows import SEGMENTS
 from hli_bench.manual.axis.fallbacks import (
     effective_edge,
     effective_input,
     effective_probing_offset,
     effective_signal,
+    fixed_stop_max_delta,
+    fixed_stop_pos_lag_limit,
     fixed_stop_start_per_mille,
 )
 from hli_bench.manual.axis.words import Edge, ProbingSignal
 from hli_bench.manual.errors import path_interpolator as errors
+from hli_bench.manual.errors import path_preparation as preparation_errors
 from hli_bench.manual.errors import position_controller as position_errors
 
 FIXED_STOP_TYPE: Final = 7
@@ -33,6 +38,14 @@ RETRACTION_FEED: Final = 1000.0
 _NEVER: Final = 1 << 62
 ARMING_CYCLES: Final = 500
 """Cycles after which a source that does not get ready is an error (decided here)."""
+ARRIVAL_CYCLES: Final = 20
+"""Cycles behind the end of the interpolation in which an event still counts (decided here, decision 0012)."""
+MAIN_AXES: Final = 3
+FEED_FROM_AXIS: Final = 2
+MAIN_AXES_ONLY: Final = 4
+STROKE_TYPES: Final = (FEED_FROM_AXIS, MAIN_AXES_ONLY)
+"""Measurement types whose feed P-AXIS-00086 limits."""
+MOST_AXES: Final = {FEED_FROM_AXIS: 1, MAIN_AXES_ONLY: MAIN_AXES}
 
 
 @dataclass(slots=True)
@@ -56,6 +69,8 @@ class Run:
     """Axes that have not delivered yet, with what to wait for before the motion."""
     values: dict[AxisIndex, MeasuredValue] = field(default_factory=dict)
     segment: int = -1
+    begun: Ns = Ns(0)
+    """DC time at which the motion began: an event before it does not belong to the run."""
     target_path: float = 0.0
     """Path (0.1 um) to the programmed target: an event behind it came too late for V.A.MERF."""
     before_target: dict[AxisIndex, bool] = field(default_factory=dict)
@@ -81,12 +96,29 @@ def refused(core: Core, block: MeasuringRun) -> bool:
         if not axis.params.kenngr.messachse:
             core.report(errors.NOT_A_MEASUREMENT_AXIS, block.source, axis.number, axis=index)
             return True
-        per_mille = fixed_stop_start_per_mille(axis.params)
-        if block.measuring_type == FIXED_STOP_TYPE and per_mille > 1000:
-            core.report(errors.FIXED_STOP_START_TOO_LARGE, block.source, axis.number, per_mille, axis=index)
+        if block.measuring_type == FIXED_STOP_TYPE and _stop_refused(core, block, index):
             return True
+    most = MOST_AXES.get(block.measuring_type, len(core.setup.axes))
+    if len(block.target) > most:
+        core.report(
+            errors.TOO_MANY_MEASURING_AXES, block.source, len(block.target), most, block.measuring_type
+        )
+        return True
     if not block.axes:
         core.report(errors.MEASURING_PATH_TOO_SMALL, block.source)
+        return True
+    return False
+
+
+def _stop_refused(core: Core, block: MeasuringRun, index: AxisIndex) -> bool:
+    """Report detection parameters with which no stop can be told from free motion."""
+    axis = core.axis(index)
+    per_mille = fixed_stop_start_per_mille(axis.params)
+    if per_mille > 1000:
+        core.report(errors.FIXED_STOP_START_TOO_LARGE, block.source, axis.number, per_mille, axis=index)
+        return True
+    if fixed_stop_pos_lag_limit(axis.params) <= 0 and fixed_stop_max_delta(axis.params) < 0:
+        core.report(errors.FIXED_STOP_PARAMETERS, block.source, axis.number, axis=index)
         return True
     return False
 
@@ -100,17 +132,13 @@ def begin(
     run = Run(core, block, probes, error_no_signal, {})
     for axis in block.axes:
         probe = _probe(run, axis)
-        source = probing.source(probe.signal)
-        if source.blocked(core, axis, probe.edge):
-            core.report(
-                errors.PROBE_ALREADY_OPERATED,
-                block.source,
-                core.axis(axis).number,
-                block.source.number,
-                axis=axis,
-            )
+        if probing.source(probe.signal).blocked(core, axis, probe.edge):
+            number = core.axis(axis).number
+            core.report(errors.PROBE_ALREADY_OPERATED, block.source, number, block.source.number, axis=axis)
             return None
-        run.pending[axis] = source.arm(core, axis, probe.input, probe.edge)
+    for axis in block.axes:
+        probe = _probe(run, axis)
+        run.pending[axis] = probing.source(probe.signal).arm(core, axis, probe.input, probe.edge)
         core.show(axis, "lr_state/measurement_active_r", True)
         core.show(axis, "lr_state/measure_value_ok_r", False)
     return run
@@ -132,23 +160,56 @@ def _start_path(run: Run) -> None:
         axis: float(effective_probing_offset(core.axis(axis).params.kenngr, run.block.measuring_type))
         for axis in run.block.target
     }
-    put = core.preparation.measuring_run(run.block, offsets)
+    put = core.preparation.measuring_run(run.block, _feed(run), offsets)
     if put is None:
         core.report(errors.MEASURING_PATH_TOO_SMALL, run.block.source)
         return
     run.segment, run.target_path = put
+    run.begun = core.dc_now
+    if run.block.measuring_type in STROKE_TYPES:
+        _spare_probe(run)
+
+
+def _feed(run: Run) -> float:
+    """Return the feed in 0.1 um/s: the F word, with type 2 P-AXIS-00215 of the axis."""
+    if run.block.measuring_type != FEED_FROM_AXIS:
+        return tenth_um_per_s(run.block.feed)
+    axis = run.core.axis(next(iter(run.block.target)))
+    return tenth_um_from_um_per_s(axis.params.kenngr.vb_messen)
+
+
+def _spare_probe(run: Run) -> None:
+    """Lower the feed so that the way to standstill stays within the stroke of the probe (P-AXIS-00086)."""
+    core = run.core
+    strokes = [core.axis(axis).params.kenngr.hub_messtaster for axis in run.block.axes]
+    before, after = core.preparation.limit_feed(run.segment, float(min(strokes)))
+    if after < before:
+        feeds = [round(mm_per_min(one), 3) for one in (before, after)]
+        core.report(preparation_errors.MEASURING_FEED_CORRECTED, run.block.source, *feeds)
 
 
 def _latch(axis: AxisIndex, run: Run) -> None:
-    core, probe = run.core, _probe(run, axis)
-    latched = probing.source(probe.signal).latched(core, axis, probe.input, probe.edge)
-    if latched is None:
-        core.report(
-            position_errors.TIMESTAMP_NOT_AVAILABLE, run.block.source, core.axis(axis).number, axis=axis
-        )
-        run.pending.clear()
-        return
-    position, dc_ns = latched
+    """Take the value of an axis; a fixed stop found by one axis is the event of all."""
+    core = run.core
+    for one in tuple(run.pending) if run.fixed_stop else (axis,):
+        probe = _probe(run, one)
+        latched = probing.source(probe.signal).latched(core, one, probe.input, probe.edge)
+        if latched is None:
+            sheet = position_errors.TIMESTAMP_NOT_AVAILABLE
+            core.report(sheet, run.block.source, core.axis(one).number, axis=one)
+            run.pending.clear()
+            return
+        position, dc_ns = latched
+        if dc_ns < run.begun:
+            sheet = errors.PROBE_EVENT_TOO_EARLY
+            core.report(sheet, run.block.source, core.axis(one).number, axis=one)
+            run.pending.clear()
+            return
+        _keep(run, one, probe, position, dc_ns)
+
+
+def _keep(run: Run, axis: AxisIndex, probe: Probe, position: float, dc_ns: Ns) -> None:
+    core = run.core
     del run.pending[axis]
     run.values[axis] = MeasuredValue(
         source=run.block.source,
@@ -158,15 +219,21 @@ def _latch(axis: AxisIndex, run: Run) -> None:
         dc_ns=dc_ns,
         edge=probe.edge.value,
     )
-    run.before_target[axis] = core.path.done <= run.target_path
+    run.before_target[axis] = _path_of(run, axis, position) <= run.target_path + 0.5
     core.emitted.append(run.values[axis])
     core.show(axis, "lr_state/measure_value_ok_r", True)
-    if run.fixed_stop:
-        run.pending.clear()
 
 
-def _all_latched(run: Run) -> str:
-    return "running" if run.pending else "braking"
+def _path_of(run: Run, axis: AxisIndex, position: float) -> float:
+    """Return the path of the run that belongs to a position; of an axis that stands, the path done so far."""
+    segment = run.core.rows.segment[run.segment % SEGMENTS]
+    if not segment["moves"][axis]:
+        return run.core.path.done
+    return float((position - segment["start"][axis]) / segment["direction"][axis])
+
+
+def _all_latched(phase: str, run: Run) -> str:
+    return phase if run.pending else "braking"
 
 
 def _brake(run: Run) -> None:
@@ -213,22 +280,21 @@ def _after_standstill(run: Run) -> str:
     return "retracting" if run.fixed_stop else "finishing"
 
 
-def _ready(run: Run) -> Until:
-    """The next source that has to get ready (they are asked one after the other)."""
-    condition = next((one for one in run.pending.values() if one is not None), None)
-    return condition or cycle_reached(run.core.cycle)
+def _ready(axis: AxisIndex, run: Run) -> Until:
+    return run.pending[axis] or cycle_reached(run.core.cycle)
 
 
-def _one_is_ready(run: Run) -> None:
-    for axis, condition in run.pending.items():
-        if condition is not None:
-            run.pending[axis] = None
-            return
+def _is_ready(axis: AxisIndex, run: Run) -> None:
+    run.pending[axis] = None
 
 
 def arming(run: Run) -> str:
     """Return the phase that a run begins or goes on with: as long as a source is not ready, `arming`."""
     return "arming" if any(one is not None for one in run.pending.values()) else "starting"
+
+
+def _arrived(run: Run) -> Until:
+    return cycle_reached(run.core.cycle + ARRIVAL_CYCLES)
 
 
 def _begun(run: Run) -> str:
@@ -246,20 +312,18 @@ def _event(axis: AxisIndex, run: Run) -> Until:
 
 def table(run: Run) -> Table[Run]:
     """Return the phases of a run; each axis that has to deliver is one way out of the phase `running`."""
-    events = tuple(
-        Then(partial(_event, axis), _all_latched, partial(_latch, axis)) for axis in run.block.axes
-    )
+
+    def events(phase: str) -> Iterator[Then[Run]]:
+        for axis in run.block.axes:
+            yield Then(partial(_event, axis), partial(_all_latched, phase), partial(_latch, axis))
+
+    ready = [Then(partial(_ready, axis), arming, partial(_is_ready, axis)) for axis in run.block.axes]
     overdue = run.core.cycle + ARMING_CYCLES
     return {
-        "arming": Phase(
-            _nothing,
-            (
-                Then(_ready, arming, _one_is_ready),
-                Then(lambda _: cycle_reached(overdue), "finishing", _not_ready),
-            ),
-        ),
+        "arming": Phase(_nothing, (*ready, Then(lambda _: cycle_reached(overdue), "finishing", _not_ready))),
         "starting": Phase(_start_path, (Then(always, _begun),)),
-        "running": Phase(_nothing, (*events, Then(lambda _: path_done(), _after_standstill, _missed))),
+        "running": Phase(_nothing, (*events("running"), Then(lambda _: path_done(), "arriving"))),
+        "arriving": Phase(_nothing, (*events("arriving"), Then(_arrived, _after_standstill, _missed))),
         "braking": Phase(_brake, (Then(lambda _: path_done(), _after_standstill),)),
         "retracting": Phase(_retract, (Then(lambda _: path_done(), "finishing"),)),
         "finishing": Phase(_finish, (Then(always, END),)),

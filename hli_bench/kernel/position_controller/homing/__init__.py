@@ -91,10 +91,7 @@ def finish(run: Run) -> None:
 
 
 def abandon(run: Run) -> None:
-    """Stop the axis where it is when homing is broken off."""
+    """Brake the axis when homing is broken off; the path takes it again when it stands."""
     row = run.core.row(run.axis)
     row["jog_velocity"] = 0.0
-    row["velocity"] = 0.0
-    row["mode"] = PATH
     row["probe_function"] = 0
-    run.core.preparation.synchronise()

@@ -14,13 +14,14 @@ from hli_bench.kernel.position_controller.homing import (
     reference,
 )
 from hli_bench.kernel.sequence import END, Phase, Table, Then, Until
-from hli_bench.kernel.watches import jog_stopped, probe_status
+from hli_bench.kernel.watches import jog_stopped, moved, probe_status
 from hli_bench.manual.axis.fallbacks import effective_input
 from hli_bench.manual.errors import position_controller as errors
 
 ZERO_PULSE = 0x15
 """Touch probe function: enable, encoder zero pulse, positive edge."""
 STORED = 0x02
+ENDLESS = 1 << 53
 
 
 def first(run: Run) -> str:
@@ -35,16 +36,18 @@ def table(run: Run) -> Table[Run]:
     away = gear.vb_refmax if kenngr.fast_from_cam else gear.vb_reflow
     on, off = partial(cam, operated=True), partial(cam, operated=False)
     by_cam = kenngr.homing_without_zero_pulse
-    found = Then(on, "stop", _reference_here) if by_cam else Then(on, "zero pulse")
+    found = Then(on, "stop", _reference_here) if by_cam else Then(on, "on cam")
+    lost = Then(off, "lost", _no_zero_pulse)
     return {
         "to cam": Phase(_move(gear.vb_refmax), (Then(on, "stop on cam"),)),
         "stop on cam": Phase(_stop, (Then(_stands, "off cam"),)),
         "off cam": Phase(_move(away, -1), (Then(off, "stop off cam"),)),
         "stop off cam": Phase(_stop, (Then(_stands, "search"),)),
         "search": Phase(_move(gear.vb_reflow), (found,)),
+        "on cam": Phase(_nothing, (Then(_activated, "zero pulse"), lost)),
         "zero pulse": Phase(
             _arm_zero_pulse,
-            (Then(_latched, "stop", _reference_latched), Then(off, "lost", _no_zero_pulse)),
+            (Then(_latched, "stop", _reference_latched), Then(_too_far, "lost", _no_zero_pulse), lost),
         ),
         "stop": Phase(_stop, (Then(_stands, END, finish),)),
         "lost": Phase(_stop, (Then(_stands, END),)),
@@ -65,6 +68,24 @@ def _stop(run: Run) -> None:
 
 def _stands(run: Run) -> Until:
     return jog_stopped(run.axis)
+
+
+def _nothing(run: Run) -> None:
+    """A phase that only waits."""
+
+
+def _moved(run: Run, way: int) -> Until:
+    return moved(run.axis, float(way), float(run.core.row(run.axis)["actual"]))
+
+
+def _activated(run: Run) -> Until:
+    """P-AXIS-00494: the zero pulse counts from this way behind the cam on."""
+    return _moved(run, run.setup.params.kenngr.shift_offset_zero_pulse_activation)
+
+
+def _too_far(run: Run) -> Until:
+    """P-AXIS-00404: longest way of the search, 0 is off."""
+    return _moved(run, run.setup.params.lr_hw[0].zero_pulse_search_max_dist or ENDLESS)
 
 
 def _shift(run: Run) -> int:

@@ -1,7 +1,9 @@
 """Machine side of a cycle: cyclic position servos, mechanics, contact, spatial switches, edges and their latches.
 
-A cycle is walked in equal sub-steps. Within one, every axis moves with constant speed, so the instant at which
-it crosses a threshold is exact; edges are worked off in the order of their instants.
+A cycle is walked in equal sub-steps, axis by axis: nothing that happens at a switch acts back on the motion in
+the same cycle. Within a sub-step an axis moves with constant speed, so the instant at which it crosses a threshold
+is exact. Only when an axis may have reached a threshold are the sub-steps gone through for edges, in the order of
+their instants.
 """
 
 import math
@@ -30,52 +32,92 @@ def count(servo: Rows, axis: int, angle: float) -> int:
 
 
 @law
-def mechanics(servo: Rows, axis: int, torque: float, time: float) -> None:
-    """Move one axis by one sub-step: friction with stiction, fixed stop, inertia (semi-implicit Euler)."""
+def move_axis(servo: Rows, axis: int, sub_steps: int, time: float, cycle: float) -> None:
+    """Move one axis by one cycle: servo and mechanics, sub-step after sub-step of `time` seconds.
+
+    Servo: position P with velocity feed-forward, speed PI, torque clamp that holds the integrator. Mechanics:
+    friction with stiction, fixed stop, inertia, semi-implicit Euler. The angles go into `angles`.
+    """
     row = servo[axis]
-    speed = row["speed"]
+    angles = row["angles"]
     angle = row["angle"]
-    row["angle_before"] = angle
-    if row["stop_side"] != 0:
-        depth = (angle - row["stop_angle"]) * row["stop_side"]
-        if depth > 0.0:
-            push = row["stop_stiffness"] * depth + row["stop_damping"] * speed * row["stop_side"]
-            if push > 0.0:
-                torque -= push * row["stop_side"]
-    if abs(speed) < STANDSTILL:
-        if abs(torque) <= row["static"]:
-            row["speed"] = 0.0
-            return
-        friction = math.copysign(row["coulomb"], torque)
-    else:
-        friction = math.copysign(row["coulomb"], speed)
-    after = speed + time / row["inertia"] * (torque - row["viscous"] * speed - friction)
-    if speed * after < 0.0 and abs(torque) <= row["static"]:
-        after = 0.0
-    row["speed"] = after
-    row["angle"] = angle + after * time
+    speed = row["speed"]
+    integrator = row["integrator"]
+    per_rad = row["increments_per_rad"]
+    offset = row["encoder_offset"]
+    kv = row["kv"]
+    gain = row["speed_gain"]
+    integral_gain = row["speed_integral_gain"]
+    limit = min(row["torque_limit_permille"], row["peak_permille"]) * 1e-3 * row["rated_torque"]
+    inertia = row["inertia"]
+    viscous = row["viscous"]
+    coulomb = row["coulomb"]
+    static = row["static"]
+    side = row["stop_side"]
+    stop_angle = row["stop_angle"]
+    demand_from = row["demand_from"]
+    whole = servo_span(servo, axis)
+    feed_forward = whole / cycle
+    lowest = angle
+    highest = angle
+    torque = 0.0
+    flags = 0
+    angles[0] = angle
+    for sub in range(sub_steps):
+        demand = demand_from + whole * (sub / sub_steps)
+        position = float(int(math.floor(angle * per_rad + 0.5)))
+        wanted = (kv * (demand - offset - position) + feed_forward) / per_rad
+        error = wanted - speed
+        torque = gain * error + integrator
+        if torque > limit:
+            torque = limit
+            flags = 0x0800
+        elif torque < -limit:
+            torque = -limit
+            flags = 0x0800
+        else:
+            integrator += integral_gain * error * time
+        acting = torque
+        if side != 0:
+            depth = (angle - stop_angle) * side
+            if depth > 0.0:
+                push = row["stop_stiffness"] * depth + row["stop_damping"] * speed * side
+                if push > 0.0:
+                    acting -= push * side
+        if abs(speed) < STANDSTILL and abs(acting) <= static:
+            speed = 0.0
+        else:
+            friction = math.copysign(coulomb, acting if abs(speed) < STANDSTILL else speed)
+            after = speed + time / inertia * (acting - viscous * speed - friction)
+            if speed * after < 0.0 and abs(acting) <= static:
+                after = 0.0
+            speed = after
+            angle += after * time
+        angles[sub + 1] = angle
+        lowest = min(lowest, angle)
+        highest = max(highest, angle)
+    row["angle"] = angle
+    row["speed"] = speed
+    row["integrator"] = integrator
+    row["torque"] = torque
+    row["angle_low"] = lowest
+    row["angle_high"] = highest
+    row["status_flags"] |= flags
 
 
 @law
-def servo_torque(servo: Rows, axis: int, demand: float, feed_forward: float, time: float) -> float:
-    """Return the torque (Nm) of position P and speed PI control, clamped; sets the flag of an active clamp."""
+def rest_axis(servo: Rows, axis: int, sub_steps: int) -> None:
+    """Let an axis without power stand (its brake holds)."""
     row = servo[axis]
-    position = float(count(servo, axis, row["angle"]) - row["encoder_offset"])
-    wanted = (row["kv"] * (demand - row["encoder_offset"] - position) + feed_forward) / row[
-        "increments_per_rad"
-    ]
-    error = wanted - row["speed"]
-    limit = min(row["torque_limit_permille"], row["peak_permille"]) * 1e-3 * row["rated_torque"]
-    torque = row["speed_gain"] * error + row["integrator"]
-    if torque > limit:
-        torque = limit
-        row["status_flags"] |= 0x0800
-    elif torque < -limit:
-        torque = -limit
-        row["status_flags"] |= 0x0800
-    else:
-        row["integrator"] += row["speed_integral_gain"] * error * time
-    return torque
+    angle = row["angle"]
+    row["demand_from"] = float(count(servo, axis, angle))
+    row["integrator"] = 0.0
+    row["speed"] = 0.0
+    row["torque"] = 0.0
+    row["angle_low"] = angle
+    row["angle_high"] = angle
+    for sub in range(sub_steps + 1):
+        row["angles"][sub] = angle
 
 
 @law
@@ -181,6 +223,7 @@ def distribute(
     edges: Rows,
     number: int,
     at_ns: int,
+    sub: int,
     begin_ns: int,
     step_ns: int,
     dc_epoch_ns: int,
@@ -203,7 +246,8 @@ def distribute(
         row = servo[axis]
         for i in range(2):
             if row["probe_signal"][i] == number:
-                angle = row["angle_before"] + part * (row["angle"] - row["angle_before"])
+                before = row["angles"][sub]
+                angle = before + part * (row["angles"][sub + 1] - before)
                 probe_edge(servo, axis, i, level, count(servo, axis, angle), dc_epoch_ns + at_ns, 0)
         for i in range(8):
             if row["input_signal"][i] == number:
@@ -253,24 +297,25 @@ def switches(
     edge: Rows,
     edges: Rows,
     pending: Rows,
+    sub: int,
     begin_ns: int,
     step_ns: int,
     dc_epoch_ns: int,
 ) -> None:
     """Find this sub-step's switch changes, add contact bounce, and distribute them in the order of their instants."""
     for s in range(switch.shape[0]):
-        row = servo[switch[s]["axis"]]
-        at = switch_change(switch, s, row["angle_before"], row["angle"], begin_ns, step_ns)
+        angles = servo[switch[s]["axis"]]["angles"]
+        at = switch_change(switch, s, angles[sub], angles[sub + 1], begin_ns, step_ns)
         if at < 0:
             continue
         change = 1 if switch[s]["state"] else -1
-        put_pending(pending, at, switch[s]["signal"], change)
+        put_pending(pending, edges, at, switch[s]["signal"], change)
         bounce = switch[s]["bounce_ns"]
         if bounce > 0:
-            put_pending(pending, at + bounce // 2, switch[s]["signal"], -change)
-            put_pending(pending, at + bounce, switch[s]["signal"], change)
+            put_pending(pending, edges, at + bounce // 2, switch[s]["signal"], -change)
+            put_pending(pending, edges, at + bounce, switch[s]["signal"], change)
     end_ns = begin_ns + step_ns
-    while True:
+    while edges[1] > 0:
         first = -1
         for p in range(pending.shape[0]):
             if (
@@ -283,32 +328,48 @@ def switches(
             return
         number = pending[first, 1]
         pending[first, 1] = -1
+        edges[1] -= 1
         signal[number]["operated"] += pending[first, 2]
-        distribute(
-            servo, signal, channel, edge, edges, number, pending[first, 0], begin_ns, step_ns, dc_epoch_ns
-        )
+        at = pending[first, 0]
+        distribute(servo, signal, channel, edge, edges, number, at, sub, begin_ns, step_ns, dc_epoch_ns)
 
 
 @law
-def put_pending(pending: Rows, at_ns: int, signal: int, change: int) -> None:
-    """Note a coming change of a signal (`pending` rows: instant, signal or -1, change)."""
+def may_switch(servo: Rows, switch: Rows) -> bool:
+    """Tell whether an axis came where one of its switches could change."""
+    for s in range(switch.shape[0]):
+        row = switch[s]
+        low = servo[row["axis"]]["angle_low"]
+        high = servo[row["axis"]]["angle_high"]
+        if row["state"]:
+            if low < row["low"] - row["hysteresis"] or high > row["high"] + row["hysteresis"]:
+                return True
+        else:
+            shift = row["noise"][row["noise_index"]]
+            if low <= row["high"] - shift and high >= row["low"] + shift:
+                return True
+    return False
+
+
+@law
+def put_pending(pending: Rows, edges: Rows, at_ns: int, signal: int, change: int) -> None:
+    """Note a coming change of a signal (`pending` rows: instant, signal or -1, change); `edges[1]` counts them."""
     for p in range(pending.shape[0]):
         if pending[p, 1] < 0:
             pending[p, 0] = at_ns
             pending[p, 1] = signal
             pending[p, 2] = change
+            edges[1] += 1
             return
 
 
 @law
-def zero_pulses(servo: Rows, axis: int, begin_ns: int, step_ns: int, dc_epoch_ns: int) -> None:
-    """Latch the encoder's zero pulse when this sub-step passes it and an input is armed for it."""
+def zero_pulses(servo: Rows, axis: int, sub: int, begin_ns: int, step_ns: int, dc_epoch_ns: int) -> None:
+    """Latch the encoder's zero pulse when this sub-step passes it (an input is armed for it)."""
     row = servo[axis]
-    if row["probe_function"] & 0x0404 == 0:
-        return
     turn = row["increments_per_turn"]
-    before = count(servo, axis, row["angle_before"]) - row["encoder_offset"] - row["zero_pulse"]
-    after = count(servo, axis, row["angle"]) - row["encoder_offset"] - row["zero_pulse"]
+    before = count(servo, axis, row["angles"][sub]) - row["encoder_offset"] - row["zero_pulse"]
+    after = count(servo, axis, row["angles"][sub + 1]) - row["encoder_offset"] - row["zero_pulse"]
     if before == after:
         return
     if after > before:
@@ -367,31 +428,23 @@ def advance_machine(
         row = servo[axis]
         probe_arm(servo, axis)
         row["status_flags"] = 0
-        if row["enabled"] == 0:
-            row["demand_from"] = float(count(servo, axis, row["angle"]))
-            row["integrator"] = 0.0
-            row["speed"] = 0.0
-        row["angle_before"] = row["angle"]
+        if row["enabled"]:
+            move_axis(servo, axis, sub_steps, time, cycle)
+        else:
+            rest_axis(servo, axis, sub_steps)
+        if row["probe_function"] & 0x0404:
+            for sub in range(sub_steps):
+                zero_pulses(servo, axis, sub, begin_ns + sub * step_ns, step_ns, dc_epoch_ns)
     for number in range(signal.shape[0]):
         # a signal that was forced or let go since the last cycle changes at its begin
         if signal_level(signal, number) != signal[number]["level"]:
             distribute(
-                servo, signal, channel, edge, edges, number, begin_ns + 1, begin_ns, step_ns, dc_epoch_ns
+                servo, signal, channel, edge, edges, number, begin_ns + 1, 0, begin_ns, step_ns, dc_epoch_ns
             )
-    for sub in range(sub_steps):
-        begin = begin_ns + sub * step_ns
-        part = sub / sub_steps
-        for axis in range(axes):
-            row = servo[axis]
-            if row["enabled"] == 0:
-                continue
-            whole = servo_span(servo, axis)
-            demand = row["demand_from"] + whole * part
-            torque = servo_torque(servo, axis, demand, whole / cycle, time)
-            row["torque"] = torque
-            mechanics(servo, axis, torque, time)
-            zero_pulses(servo, axis, begin, step_ns, dc_epoch_ns)
-        switches(servo, switch, signal, channel, edge, edges, pending, begin, step_ns, dc_epoch_ns)
+    if edges[1] > 0 or may_switch(servo, switch):
+        for sub in range(sub_steps):
+            begin = begin_ns + sub * step_ns
+            switches(servo, switch, signal, channel, edge, edges, pending, sub, begin, step_ns, dc_epoch_ns)
     now_ns = begin_ns + cycle_ns
     for c in range(channel.shape[0]):
         channel_image(channel, c, now_ns, dc_epoch_ns)
@@ -404,8 +457,6 @@ def advance_machine(
         row["demand"] = wrap32(int(math.floor(row["demand_from"] + 0.5)))
         row["following_error"] = wrap32(int(math.floor(row["demand_from"] + 0.5)) - position)
         row["velocity"] = int(row["speed"] * row["increments_per_rad"])
-        if row["enabled"] == 0:
-            row["torque"] = 0.0
         row["torque_permille"] = int(math.floor(row["torque"] / row["rated_torque"] * 1000.0 + 0.5))
         raised = row["fault"]
         supervise(servo, axis, cycle_ns)

@@ -84,7 +84,6 @@ def _servo(row: Rows, axis: PlantAxis, signals: SignalNames) -> None:
         "torque_limit_permille": plant.peak_permille,
         "following_window": OPERATION_OFF,
         "angle": axis.start_mm / per_rad,
-        "angle_before": axis.start_mm / per_rad,
         "inertia": inertia,
         "viscous": plant.viscous_nm_s,
         "coulomb": plant.coulomb_nm,

@@ -86,7 +86,10 @@ class AxisInfo:
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Samples of one axis in mm (degrees): `at_ns` is the first cycle of each; lows and highs span its cycles."""
+    """Samples of one axis in mm (degrees): `at_ns` is the first cycle of each; lows and highs span its cycles.
+
+    It begins with the first telegram of the drive: before that nobody knows where the axis stands.
+    """
 
     at_ns: NDArray[np.int64]
     command: NDArray[np.float64]
@@ -133,6 +136,9 @@ class _Samples:
         samples["command"] = rows["command"]
         samples["actual_low"] = samples["actual_high"] = rows["actual"]
         samples["lag_low"] = samples["lag_high"] = rows["lag"]
+        unknown = rows["statusword"] == 0
+        for name in _SAMPLE.names or ():
+            samples[name][unknown] = np.nan
         self._put(np.arange(first, first + len(rows), dtype=np.int64), samples)
         while self.count > self.limit:
             numbers, values = self.take()
@@ -157,9 +163,9 @@ class _Samples:
         merged: Any = np.empty((len(starts), self.axes), _SAMPLE)
         merged["command"] = samples["command"][starts]
         for name in ("actual_low", "lag_low"):
-            merged[name] = np.minimum.reduceat(samples[name], starts)
+            merged[name] = np.fmin.reduceat(samples[name], starts)
         for name in ("actual_high", "lag_high"):
-            merged[name] = np.maximum.reduceat(samples[name], starts)
+            merged[name] = np.fmax.reduceat(samples[name], starts)
         return cycles[starts], merged
 
 
@@ -202,7 +208,7 @@ class Recording:
         if self._buffer.count >= LOG_CYCLES:
             self._condense()
         for window in self._open:
-            rows = self._cycles(first, min(self.last, window.last))
+            rows = self._cycles(window.first + len(window.rows), min(self.last, window.last))
             window.rows = np.concatenate((window.rows, rows))
         self._open = [window for window in self._open if window.last > self.last]
         self._look()
@@ -244,8 +250,9 @@ class Recording:
         self._condense()
         index = {info.name: number for number, info in enumerate(self.axes)}[axis]
         numbers, values = self._samples.take()
-        mm = {name: values[name][:, index] / TENTH_UM_PER_MM for name in _SAMPLE.names or ()}
-        return Curve(at_ns=numbers * self.cycle_ns, **mm)
+        known = ~np.isnan(values["actual_low"][:, index])
+        mm = {name: values[name][known, index] / TENTH_UM_PER_MM for name in _SAMPLE.names or ()}
+        return Curve(at_ns=numbers[known] * self.cycle_ns, **mm)
 
     def level(self, signal: str, at_ns: int) -> bool:
         """Return the level of a signal at an instant; in front of its first edge, the other level than after."""

@@ -132,9 +132,9 @@ def curve(
     bottom, top = _range(low, high)
     at, low, high = _columns(at, low, high)
     scale = HEIGHT / (top - bottom)
-    points = [(axis.x(x), (top - y) * scale) for x, y in zip(at, high, strict=True)]
-    points += [(axis.x(x), (top - y) * scale) for x, y in zip(at[::-1], low[::-1], strict=True)]
-    shapes = _path(kind, points, close=True)
+    upper = [(axis.x(x), (top - y) * scale) for x, y in zip(at, high, strict=True)]
+    lower = [(axis.x(x), (top - y) * scale) for x, y in zip(at[::-1], low[::-1], strict=True)]
+    shapes = _path(kind, upper, lower)
     if level is not None:
         shapes += _horizontal("level", (top - level) * scale)
     ticks = [tick for tick in steps(bottom, top, 4) if bottom <= tick <= top]
@@ -156,17 +156,21 @@ def _columns(at: Floats, low: Floats, high: Floats) -> tuple[Floats, Floats, Flo
     return at[starts], np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
 
 
-def _path(kind: str, points: Iterable[tuple[float, float]], *, close: bool = False) -> str:
-    """Return a path; points on a level line are left out."""
+def _path(kind: str, *lines: Iterable[tuple[float, float]]) -> str:
+    """Return a path through one line, or the area between two; points on a level line are left out."""
+    data = "L".join(f"{x} {y}" for line in lines for x, y in _corners(line))
+    return f'<path class="{kind}" d="M{data}{"Z" if len(lines) > 1 else ""}"/>' if data else ""
+
+
+def _corners(line: Iterable[tuple[float, float]]) -> list[tuple[str, str]]:
     kept: list[tuple[str, str]] = []
-    for x, y in points:
+    for x, y in line:
         point = (f"{x:.1f}", f"{y:.2f}")
         if len(kept) > 1 and kept[-1][1] == kept[-2][1] == point[1]:
             kept[-1] = point
         else:
             kept.append(point)
-    data = "L".join(f"{x} {y}" for x, y in kept)
-    return f'<path class="{kind}" d="M{data}{"Z" if close else ""}"/>' if kept else ""
+    return kept
 
 
 def digital(

@@ -25,16 +25,17 @@ th { color: var(--soft); font-size: .8rem; font-weight: 500; white-space: nowrap
 td.n, th.n { text-align: right; } td.t { white-space: nowrap; }
 ul.texts { margin: 0; padding: 0; list-style: none; font-family: ui-monospace, Menlo, Consolas, monospace;
   font-size: .9rem; overflow-wrap: anywhere; }
-ul.texts b { color: var(--soft); font-weight: 400; margin-right: .75rem; }
+ul.texts b { color: var(--soft); font-weight: 400; display: inline-block;
+  min-width: 3.5rem; padding-right: .75rem; }
 details { margin-top: 1rem; } summary { cursor: pointer; color: var(--soft); }
 figure { margin: .5rem 0 0; break-inside: avoid; }
 .name { margin: .6rem 0 .15rem 3.6rem; color: var(--soft); font-size: .8rem; line-height: 1.2; }
 .bare .name { margin-left: 0; } .name b { color: var(--ink); font-weight: 600; }
-.panel { display: grid; grid-template-columns: 3.6rem 1fr; } .bare .panel { grid-template-columns: 1fr; }
+.panel { display: grid; grid-template: 100% / 3.6rem 1fr; } .bare .panel { grid-template: 100% / 1fr; }
 .y { position: relative; font-size: .72rem; color: var(--soft); font-variant-numeric: tabular-nums; }
 .y span { position: absolute; right: .45rem; transform: translateY(-50%); }
 .plot { position: relative; background: var(--panel); }
-.plot svg { display: block; width: 100%; height: 100%; overflow: visible; }
+.plot svg { position: absolute; inset: 0; width: 100%; height: 100%; }
 .x { position: relative; height: 1.4rem; margin-left: 3.6rem; font-size: .72rem; color: var(--soft);
   font-variant-numeric: tabular-nums; }
 .bare .x { margin-left: 0; }

@@ -22,6 +22,6 @@ class HomingCam(Plc):
             axis.lr_mc_control.reference_cam.enable_w = True
         self.switch = {number: getattr(io.cams, f"ch{number}") for number in self.axes}
 
-    def cycle(self, hli, io):  # noqa: ARG002 - the signature is given
+    def cycle(self, hli, io):
         for number, switch in self.switch.items():
             hli.ax[number].lr_mc_control.reference_cam.command_w = switch.input

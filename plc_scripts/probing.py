@@ -13,7 +13,7 @@ class Probing(Plc):
     period_us = 1000
     axes = (1, 2, 3, 4, 5, 6)
 
-    def start(self, hli, io):  # noqa: ARG002 - the signature is given
+    def start(self, hli, io):
         for number in self.axes:
             axis = hli.ax[number]
             axis.head.plc_present_w = True

@@ -187,10 +187,10 @@ class Bench:
     ) -> Engine:
         if can == "inproc" and not processes:
             side = build.machine_side(self.config)
-            self.terminal_layouts = [terminal.layout for terminal in side.terminals]
+            self.terminal_layouts = build.terminal_layouts(self.config)
             return Engine(self.kernel, LocalLink(side), side.pending)
         remote = self._closing.enter_context(RemoteMachine(self.config, machine, settings, can))
-        self.terminal_layouts = list(remote.terminal_layouts)
+        self.terminal_layouts = build.terminal_layouts(self.config)
         return Engine(self.kernel, remote, remote.pending)
 
     def _open_door(self, endpoint: str, *, lockstep: bool) -> HliDoor:

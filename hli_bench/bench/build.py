@@ -9,6 +9,7 @@ from hli_bench.kernel.setup import AxisSetup, KernelSetup
 from hli_bench.plant import build as plant
 from hli_bench.runtime.machine_side import DriveNode, Forced, MachineSide
 from hli_bench.terminals.terminal import Terminal, type_of
+from hli_bench.wire.images import TerminalLayout
 
 
 def kernel(config: MachineConfig) -> Kernel:
@@ -70,3 +71,8 @@ def terminals(config: MachineConfig, channels: Any) -> list[Terminal]:
         built.append(Terminal(settings, channels, first, config.cycle_ns))
         first += len(type_of(settings).channels(settings))
     return built
+
+
+def terminal_layouts(config: MachineConfig) -> list[TerminalLayout]:
+    """Return where the entries of each terminal lie in its image."""
+    return [type_of(settings).layout(settings) for settings in config.terminals]

@@ -89,15 +89,15 @@ class RemoteMachine:
         self._take_images(cycle)
         return frames
 
-    def quiet(self, cycle: int) -> int:  # noqa: ARG002 the same for every cycle
+    def quiet(self, cycle: int) -> int:
         """No cycle passes without frames."""
         return 0
 
-    def images(self, cycle: int) -> Mapping[str, bytes]:  # noqa: ARG002 those of the last SYNC
+    def images(self, cycle: int) -> Mapping[str, bytes]:
         """Return the process images by terminal."""
         return self._images
 
-    def image_horizon(self, cycle: int) -> int:  # noqa: ARG002 the same for every cycle
+    def image_horizon(self, cycle: int) -> int:
         """The images are taken in every cycle."""
         return 1
 

@@ -4,24 +4,9 @@ from typing import Any
 
 from hli_bench.base.units import mm
 from hli_bench.bench.config import MachineConfig
+from hli_bench.protocols.canopen.cia402 import state_of
 from hli_bench.runtime.engine import Engine
 from hli_bench.shells.pacing import Lateness
-
-_DRIVE_STATES = (
-    (0x4F, 0x00, "not ready to switch on"),
-    (0x4F, 0x40, "switch on disabled"),
-    (0x6F, 0x21, "ready to switch on"),
-    (0x6F, 0x23, "switched on"),
-    (0x6F, 0x27, "operation enabled"),
-    (0x6F, 0x07, "quick stop active"),
-    (0x4F, 0x0F, "fault reaction active"),
-    (0x4F, 0x08, "fault"),
-)
-
-
-def drive_state(statusword: int) -> str:
-    """Return the CiA 402 state that a statusword shows."""
-    return next((name for mask, value, name in _DRIVE_STATES if statusword & mask == value), "unknown")
 
 
 def look(config: MachineConfig, engine: Engine, lateness: Lateness | None) -> dict[str, Any]:
@@ -38,7 +23,7 @@ def look(config: MachineConfig, engine: Engine, lateness: Lateness | None) -> di
                 "actual_mm": mm(round(float(row["actual"]))),
                 "lag_mm": mm(round(float(row["lag"]))),
                 "referenced": kernel.core.referenced[axis.index],
-                "drive": drive_state(int(row["statusword"])),
+                "drive": state_of(int(row["statusword"])),
                 "statusword": int(row["statusword"]),
             }
         )

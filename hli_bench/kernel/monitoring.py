@@ -7,12 +7,12 @@ from hli_bench.kernel.blocks import Source
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.watches import lag_over, standstill_lag_over, statusword
 from hli_bench.manual.errors import position_controller as errors
+from hli_bench.protocols.canopen.cia402 import STATES
 from hli_bench.wire.can import CanFrame
 
 LAG_TYPE = 4
 STANDSTILL_CYCLES = 100
 """An axis may need this long to come to rest behind its set point (decided here)."""
-_STATE, _FAULT = 0x4F, 0x08
 
 
 class Monitoring:
@@ -29,7 +29,7 @@ class Monitoring:
 
     def switch_on(self, axis: AxisIndex) -> None:
         """Begin to watch an axis whose drive is in operation."""
-        self._fault[axis] = self._core.watches.watch(statusword(axis, _STATE, _FAULT))
+        self._fault[axis] = self._core.watches.watch(statusword(axis, *STATES["fault"]))
         self.lag(axis, on=True)
 
     def switch_off(self, axis: AxisIndex) -> None:

@@ -1,7 +1,7 @@
-"""How a law is compiled: numba without fast-math, cached on disk, so that compiled and plain Python give the same bits."""
+"""How a law is compiled: numba, cached on disk, without fast-math, so that plain Python gives the same bits."""
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 
@@ -10,5 +10,5 @@ Law = TypeVar("Law", bound=Callable[..., Any])
 
 def law(function: Law) -> Law:
     """Compile `function`; `NUMBA_DISABLE_JIT=1` leaves it as plain Python."""
-    compiled: Law = numba.njit(cache=True, fastmath=False, error_model="numpy")(function)
-    return compiled
+    compiled: Any = numba.njit(cache=True, fastmath=False, error_model="numpy")
+    return cast("Law", compiled(function))

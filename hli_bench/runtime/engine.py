@@ -11,7 +11,7 @@ from hli_bench.base.time import Ns
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.records import Emitted
 from hli_bench.laws import stride as law
-from hli_bench.laws.rows import LOG_CYCLES, MachineRows
+from hli_bench.laws.rows import LOG_CYCLES, MachineRows, Rows
 from hli_bench.protocols.hli.access import Access, Refusal
 from hli_bench.runtime.machine_side import SYNC, MachineSide
 from hli_bench.wire.can import CanFrame
@@ -97,16 +97,11 @@ class LocalLink:
         """Return the process images by terminal."""
         return {image.terminal: image.data for image in self._side.images(cycle)}
 
-    @property
-    def pending(self) -> object:
-        """Coming signal changes (for the stride)."""
-        return self._side.pending
-
 
 class Engine:
     """Owns the cycle count. `cycle` is the last completed cycle."""
 
-    def __init__(self, kernel: Kernel, link: Link, pending: object) -> None:
+    def __init__(self, kernel: Kernel, link: Link, pending: Rows) -> None:
         self.kernel = kernel
         self.link = link
         self.cycle = 0

@@ -163,6 +163,5 @@ class MachineSide:
         self.rows.edges[0] = 0
         taken: Any = self.rows.edge[:count]
         return [
-            Edge(self.signals[int(row["signal"])], Ns(int(row["at_ns"])), bool(row["level"]))
-            for row in taken
+            Edge(self.signals[int(row["signal"])], Ns(int(row["at_ns"])), bool(row["level"])) for row in taken
         ]

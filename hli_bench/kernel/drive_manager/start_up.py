@@ -16,16 +16,17 @@ from hli_bench.kernel.sequence import END, Level, Phase, Table, Then, Until
 from hli_bench.kernel.watches import statusword
 from hli_bench.laws.rows import FOLLOW, PATH
 from hli_bench.protocols.canopen.aborts import SdoAbort
+from hli_bench.protocols.canopen.cia402 import (
+    CYCLIC_SYNCHRONOUS_POSITION,
+    MODE_OF_OPERATION,
+    PRODUCER_HEARTBEAT,
+    STATES,
+    Command,
+)
 from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame
 
 HEARTBEAT_MS: Final = 1000
 """Producer heartbeat that the CNC asks of its drives (decided here)."""
-CYCLIC_SYNCHRONOUS_POSITION: Final = 8
-_SHUTDOWN, _SWITCH_ON, _ENABLE_OPERATION = 0x06, 0x07, 0x0F
-_FAULT_RESET: Final = 0x80
-_STATE: Final = 0x6F
-_SWITCH_ON_DISABLED: Final = 0x40
-_NOT_OPERATION: Final = 0x4F
 
 
 @dataclass(slots=True)
@@ -54,8 +55,8 @@ class Drive:
 def _configure(drive: Drive) -> None:
     row = drive.core.row(drive.axis)
     row["mode"] = FOLLOW
-    drive.order(0x1017, 0, struct.pack("<H", HEARTBEAT_MS))
-    drive.order(0x6060, 0, struct.pack("<b", CYCLIC_SYNCHRONOUS_POSITION))
+    drive.order(*PRODUCER_HEARTBEAT, struct.pack("<H", HEARTBEAT_MS))
+    drive.order(*MODE_OF_OPERATION, struct.pack("<b", CYCLIC_SYNCHRONOUS_POSITION))
 
 
 def _configured(drive: Drive) -> Until:
@@ -73,7 +74,9 @@ def _controlword(word: int) -> Callable[[Drive], None]:
     return send
 
 
-def _state(mask: int, value: int) -> Callable[[Drive], Until]:
+def _state(name: str) -> Callable[[Drive], Until]:
+    mask, value = STATES[name]
+
     def reached(drive: Drive) -> Until:
         return statusword(drive.axis, mask, value)
 
@@ -83,7 +86,7 @@ def _state(mask: int, value: int) -> Callable[[Drive], Until]:
 def _follow(drive: Drive) -> None:
     """Take the drive out of operation, so that its set point can take up the actual position."""
     drive.core.row(drive.axis)["mode"] = FOLLOW
-    drive.core.row(drive.axis)["controlword"] = _SHUTDOWN
+    drive.core.row(drive.axis)["controlword"] = Command.SHUT_DOWN
 
 
 def _in_operation(drive: Drive) -> None:
@@ -94,13 +97,13 @@ def _in_operation(drive: Drive) -> None:
 
 TABLE: Final[Table[Drive]] = {
     "configure": Phase(_configure, (Then(_configured, "start"),)),
-    "start": Phase(_start_node, (Then(_state(_NOT_OPERATION, _SWITCH_ON_DISABLED), "shut down"),)),
-    "reset": Phase(
-        _controlword(_FAULT_RESET), (Then(_state(_NOT_OPERATION, _SWITCH_ON_DISABLED), "shut down"),)
+    "start": Phase(_start_node, (Then(_state("switch on disabled"), "shut down"),)),
+    "reset": Phase(_controlword(Command.RESET_FAULT), (Then(_state("switch on disabled"), "shut down"),)),
+    "disable": Phase(_follow, (Then(_state("ready to switch on"), "switch on"),)),
+    "shut down": Phase(_controlword(Command.SHUT_DOWN), (Then(_state("ready to switch on"), "switch on"),)),
+    "switch on": Phase(_controlword(Command.SWITCH_ON), (Then(_state("switched on"), "enable"),)),
+    "enable": Phase(
+        _controlword(Command.ENABLE_OPERATION), (Then(_state("operation enabled"), END, _in_operation),)
     ),
-    "disable": Phase(_follow, (Then(_state(_STATE, 0x21), "switch on"),)),
-    "shut down": Phase(_controlword(_SHUTDOWN), (Then(_state(_STATE, 0x21), "switch on"),)),
-    "switch on": Phase(_controlword(_SWITCH_ON), (Then(_state(_STATE, 0x23), "enable"),)),
-    "enable": Phase(_controlword(_ENABLE_OPERATION), (Then(_state(_STATE, 0x27), END, _in_operation),)),
 }
 """From power-on (`configure`), a fault (`reset`) or operation itself (`disable`) to operation enabled."""

@@ -21,7 +21,7 @@ def _shift(probing_input: int) -> int:
     return 8 * (probing_input - 1)
 
 
-def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:  # noqa: ARG001 same shape for every source
+def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:
     """Not to be seen: the level of the probe is not part of the telegram."""
     return False
 
@@ -36,7 +36,7 @@ def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Conditio
     return probe_status(axis, mask, ENABLE << _shift(probing_input))
 
 
-def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:  # noqa: ARG001 same shape for every source
+def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
     """The drive shows a stored value."""
     stored = STORED[edge] << _shift(probing_input)
     return probe_status(axis, stored, stored)

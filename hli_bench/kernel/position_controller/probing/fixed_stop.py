@@ -18,17 +18,17 @@ from hli_bench.manual.axis.fallbacks import (
 from hli_bench.manual.axis.words import Edge
 
 
-def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:  # noqa: ARG001 same shape for every source
+def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:
     """A stop cannot be operated beforehand."""
     return False
 
 
-def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Condition | None:  # noqa: ARG001 same shape for every source
+def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Condition | None:
     """Nothing to prepare."""
     return None
 
 
-def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:  # noqa: ARG001 same shape for every source
+def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
     """All criteria in use have held for the minimum time, behind the path at which detection is armed."""
     params = core.axis(axis).params
     cycle_us = core.setup.cycle_ns // 1000
@@ -42,7 +42,7 @@ def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
     )
 
 
-def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:  # noqa: ARG001 same shape for every source
+def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:
     """The actual position in the cycle of the detection."""
     return float(core.row(axis)["actual"]), core.dc_now
 

@@ -24,12 +24,12 @@ def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:
     return _level(core, axis) == (edge is Edge.POS)
 
 
-def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Condition | None:  # noqa: ARG001 same shape for every source
+def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Condition | None:
     """Nothing to prepare: the unit is read all the time."""
     return None
 
 
-def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:  # noqa: ARG001 same shape for every source
+def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
     """The edge of P-AXIS-00518 in the unit, from one kernel cycle to the next."""
     before = _level(core, axis)
 
@@ -43,7 +43,7 @@ def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
     return Level(edge_came)
 
 
-def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:  # noqa: ARG001 same shape for every source
+def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:
     """The actual value in the cycle that saw the edge."""
     return float(core.row(axis)["actual"]), core.dc_now
 

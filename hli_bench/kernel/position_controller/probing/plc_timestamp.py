@@ -15,7 +15,7 @@ __all__ = ["arm", "blocked", "disarm", "event", "latched"]
 UNIT = "lr_mc_control/timestamp"
 
 
-def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:  # noqa: ARG001 same shape for every source
+def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:
     """The position at the time in the timestamp unit; None when it is not enabled or outside the history."""
     unit = core.unit(axis, UNIT)
     if not unit.redirected:

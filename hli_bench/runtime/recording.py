@@ -36,7 +36,8 @@ AFTER_NS: Final = 20 * NS_PER_MS
 
 _SAMPLE: Final = np.dtype(
     [
-        ("command", "f8"),
+        ("command_low", "f8"),
+        ("command_high", "f8"),
         ("actual_low", "f8"),
         ("actual_high", "f8"),
         ("lag_low", "f8"),
@@ -92,7 +93,8 @@ class Curve:
     """
 
     at_ns: NDArray[np.int64]
-    command: NDArray[np.float64]
+    command_low: NDArray[np.float64]
+    command_high: NDArray[np.float64]
     actual_low: NDArray[np.float64]
     actual_high: NDArray[np.float64]
     lag_low: NDArray[np.float64]
@@ -133,9 +135,8 @@ class _Samples:
     def add(self, first: int, rows: Rows) -> None:
         """Take cycles."""
         samples: Any = np.empty(rows.shape, _SAMPLE)
-        samples["command"] = rows["command"]
-        samples["actual_low"] = samples["actual_high"] = rows["actual"]
-        samples["lag_low"] = samples["lag_high"] = rows["lag"]
+        for name in ("command", "actual", "lag"):
+            samples[f"{name}_low"] = samples[f"{name}_high"] = rows[name]
         unknown = rows["statusword"] == 0
         for name in _SAMPLE.names or ():
             samples[name][unknown] = np.nan
@@ -161,11 +162,9 @@ class _Samples:
     def _merged(self, cycles: NDArray[np.int64], samples: Rows) -> tuple[NDArray[np.int64], Rows]:
         starts = np.flatnonzero(np.diff(cycles // self.interval, prepend=-1))
         merged: Any = np.empty((len(starts), self.axes), _SAMPLE)
-        merged["command"] = samples["command"][starts]
-        for name in ("actual_low", "lag_low"):
-            merged[name] = np.fmin.reduceat(samples[name], starts)
-        for name in ("actual_high", "lag_high"):
-            merged[name] = np.fmax.reduceat(samples[name], starts)
+        for name in _SAMPLE.names or ():
+            extreme = np.fmin if name.endswith("_low") else np.fmax
+            merged[name] = extreme.reduceat(samples[name], starts)
         return cycles[starts], merged
 
 

@@ -62,14 +62,20 @@ def _header(recording: Recording, result: Mapping[str, Any], machine_name: str) 
 
 
 def _table(heads: Sequence[str], rows: Sequence[Sequence[str]], numbers: Sequence[int] = ()) -> str:
-    """Return a table; `numbers` are the columns that are set to the right. Cells are text."""
-    kind = ['class="n"' if column in numbers else 'class="t"' for column in range(len(heads))]
-    head = "".join(f"<th {k}>{escape(text)}</th>" for k, text in zip(kind, heads, strict=True))
+    """Return a table of texts; the columns in `numbers` are set to the right, one called Text is broken."""
+    kinds = [
+        "n" if column in numbers else "w" if text == "Text" else "t" for column, text in enumerate(heads)
+    ]
+    head = "".join(_cell("th", kind, text) for kind, text in zip(kinds, heads, strict=True))
     body = "".join(
-        "<tr>" + "".join(f"<td {k}>{escape(cell)}</td>" for k, cell in zip(kind, row, strict=True)) + "</tr>"
+        "<tr>" + "".join(_cell("td", kind, text) for kind, text in zip(kinds, row, strict=True)) + "</tr>"
         for row in rows
     )
     return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
+
+
+def _cell(tag: str, kind: str, text: str) -> str:
+    return f'<{tag} class="{kind}">{escape(text)}</{tag}>'
 
 
 def _measurements(recording: Recording, measurements: Sequence[Mapping[str, Any]]) -> str:
@@ -166,7 +172,7 @@ def _overview(recording: Recording) -> str:
 def _axis_chart(recording: Recording, info: AxisInfo, axis: TimeAxis, marks: Sequence[float]) -> str:
     """Return position and lag of an axis, nothing when it has not moved."""
     samples = recording.curve(info.name)
-    if not len(samples.command) or np.ptp(samples.command) < MOVED_MM:
+    if not len(samples.at_ns) or samples.command_high.max() - samples.command_low.min() < MOVED_MM:
         return ""
     at = samples.at_ns / NS_PER_S
     chart = Chart(axis, marks=marks)
@@ -216,7 +222,7 @@ def _event(recording: Recording, window: Window) -> str:
     """Return one measuring event: the motion around it, and who saw the signal when."""
     value, info = window.value, recording.axes[window.value.axis]
     latched_ns = value.dc_ns - recording.dc_epoch_ns
-    edge_ns = _edge(recording, latched_ns)
+    edge_ns = _edge(recording, latched_ns, rising=value.edge == "POS")
     origin_ns = latched_ns if edge_ns is None else edge_ns
     zero = "instant of the measured value" if edge_ns is None else "edge of the probe"
     taken = (window.emitted_ns - origin_ns) / NS_PER_MS
@@ -228,13 +234,13 @@ def _event(recording: Recording, window: Window) -> str:
     )
 
 
-def _edge(recording: Recording, latched_ns: int) -> int | None:
+def _edge(recording: Recording, latched_ns: int, *, rising: bool) -> int | None:
     """Return the last edge of the probe that can have led to a value, None for one without (fixed stop)."""
     oldest = latched_ns - _LOOK_BACK_CYCLES * recording.cycle_ns
     found = [
         edge.at_ns
         for edge in recording.edges_seen
-        if edge.signal == PROBE and oldest <= edge.at_ns <= latched_ns
+        if edge.signal == PROBE and edge.level is rising and oldest <= edge.at_ns <= latched_ns
     ]
     return found[-1] if found else None
 

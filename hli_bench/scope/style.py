@@ -23,6 +23,7 @@ table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nu
 th, td { padding: .3rem .9rem .3rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--faint); }
 th { color: var(--soft); font-size: .8rem; font-weight: 500; white-space: nowrap; }
 td.n, th.n { text-align: right; } td.t { white-space: nowrap; }
+td.w { min-width: 12rem; overflow-wrap: anywhere; }
 ul.texts { margin: 0; padding: 0; list-style: none; font-family: ui-monospace, Menlo, Consolas, monospace;
   font-size: .9rem; overflow-wrap: anywhere; }
 ul.texts b { color: var(--soft); font-weight: 400; display: inline-block;

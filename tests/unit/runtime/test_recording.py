@@ -35,10 +35,10 @@ def test_curves_are_in_mm_and_begin_where_the_axis_stands(run: tuple[Bench, Reco
     z, x = recording.curve("Z"), recording.curve("X")
     assert z.actual_low[0] == pytest.approx(300.0)
     assert z.actual_low.min() == pytest.approx(299.0, abs=0.1)
-    assert x.command[-1] == pytest.approx(5.0)
+    assert x.command_high[-1] == pytest.approx(5.0)
     assert x.at_ns[-1] == bench.engine.cycle * MS
     assert (x.lag_high == x.lag_low).all()
-    assert x.lag_high == pytest.approx(x.command - x.actual_low, abs=0.2)
+    assert x.lag_high == pytest.approx(x.command_low - x.actual_low, abs=0.2)
 
 
 def test_a_window_has_every_cycle_around_the_measured_value(run: tuple[Bench, Recording]) -> None:
@@ -115,6 +115,14 @@ def test_samples_span_their_cycles_wherever_blocks_ended(made: Made) -> None:
     for at_ns, low, high in zip(curve.at_ns, curve.actual_low, curve.actual_high, strict=True):
         inside = values[cycles // interval == at_ns // MS // interval]
         assert (low, high) == (inside.min() / 1e4, inside.max() / 1e4)
+
+
+def test_a_move_within_one_sample_is_a_move(made: Made) -> None:
+    made.ring["command"][...] = 0.0
+    made.ring["command"][17, 0] = 5e4
+    made.feed(np.zeros(100_000))
+    curve = made.recording.curve("X")
+    assert (curve.command_low.min(), curve.command_high.max()) == (0.0, 5.0)
 
 
 def test_a_cycle_before_the_first_telegram_is_not_shown(made: Made) -> None:

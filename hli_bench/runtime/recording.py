@@ -31,6 +31,8 @@ EVENTS: Final = 20_000
 """Edges, writes and records that are kept, the newest of each (decided here)."""
 WINDOWS: Final = 64
 """Windows that are kept, the newest (decided here)."""
+LOOKS: Final = 2
+"""How often the states of units are looked at after a write; the CNC answers in the next cycle."""
 BEFORE_NS: Final = 50 * NS_PER_MS
 AFTER_NS: Final = 20 * NS_PER_MS
 
@@ -196,6 +198,7 @@ class Recording:
         self._buffer = CycleBuffer(self._log)
         self._samples = _Samples(len(self.axes), samples)
         self._open: list[Window] = []
+        self._looks = 0
         self._states: dict[str, int] = {}
         self._shown: dict[str, int] = {}
 
@@ -209,8 +212,10 @@ class Recording:
         for window in self._open:
             rows = self._cycles(window.first + len(window.rows), min(self.last, window.last))
             window.rows = np.concatenate((window.rows, rows))
-        self._open = [window for window in self._open if window.last > self.last]
-        self._look()
+        if self._open:
+            self._open = [window for window in self._open if window.last > self.last]
+        if self._looks:
+            self._look()
 
     def frames(self, cycle: int, frames: Sequence[CanFrame]) -> None:
         """Frames are not kept."""
@@ -228,7 +233,8 @@ class Recording:
                 self._open_window(cycle, record)
 
     def commands(self, commands: Commands) -> None:
-        """Take what a PLC wrote; the CNC's answer is looked at after the next cycle."""
+        """Take what a PLC wrote; the CNC's answer is looked for after the next cycles."""
+        self._looks = LOOKS
         at_ns = Ns(commands.cycle * self.cycle_ns)
         for write in commands.writes:
             self.hli.append(HliChange(at_ns, write.path, int(write.value)))
@@ -272,6 +278,7 @@ class Recording:
 
     def _look(self) -> None:
         """Note the state of every unit that a PLC has written to, when it changed."""
+        self._looks -= 1
         for group, element in self._states.items():
             value = int(self._image.get(element))
             if value != self._shown[group]:

@@ -224,13 +224,16 @@ def _event(recording: Recording, window: Window) -> str:
     latched_ns = value.dc_ns - recording.dc_epoch_ns
     edge_ns = _edge(recording, latched_ns, rising=value.edge == "POS")
     origin_ns = latched_ns if edge_ns is None else edge_ns
-    zero = "instant of the measured value" if edge_ns is None else "edge of the probe"
     taken = (window.emitted_ns - origin_ns) / NS_PER_MS
+    if edge_ns is None:
+        seen = f"{value.origin}. 0 ms is the instant of the measured value"
+    else:
+        seen = f"{value.origin}, {value.edge} edge. 0 ms is the edge of the probe"
+    handshake = "" if edge_ns is None else _handshake(recording, window, info, origin_ns)
     return (
         f"<section><h3>{escape(value.source.number)} {escape(info.name)}: {_number(mm(value.acs_tenth_um))} {info.unit}"
-        f'</h3><p class="soft">{escape(value.origin)}, {escape(value.edge)} edge. 0 ms is the {zero} at '
-        f"{_seconds(origin_ns)}; the CNC has the value {taken:.3f} ms later.</p>"
-        f"{_motion(recording, window, info, origin_ns)}{_handshake(recording, window, info, origin_ns)}</section>"
+        f'</h3><p class="soft">{escape(seen)} at {_seconds(origin_ns)}; the CNC has the value {taken:.3f} ms later.</p>'
+        f"{_motion(recording, window, info, origin_ns)}{handshake}</section>"
     )
 
 
@@ -287,8 +290,6 @@ def _multiples(period_ns: int, axis: TimeAxis, origin_ns: int) -> list[float]:
 
 def _machine_rows(recording: Recording, axis: TimeAxis, origin_ns: int) -> list[Panel]:
     """Return the probe and the terminal inputs that it is wired to."""
-    if not any(edge.signal == PROBE for edge in recording.edges_seen):
-        return []
     panels = [_signal(recording, PROBE, axis, origin_ns, NS_PER_MS)]
     for tap in recording.inputs:
         if tap.signal != PROBE:

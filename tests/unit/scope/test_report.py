@@ -105,6 +105,23 @@ def test_a_latch_of_the_drive_shows_its_words() -> None:
     assert "command_w" not in page
 
 
+def test_a_fixed_stop_has_no_signal_to_follow() -> None:
+    stop = {
+        "axis.Z.start_mm": 9,
+        "plant.stop.Z.at_mm": 10,
+        "plant.stop.Z.side": "above",
+        "channel.messtyp": 7,
+    }
+    program = (
+        "N10 #DRIVE WR SYN [AX=Z KEY=TORQUE_LIMIT VAL=10 WAIT]\n"
+        "N20 #DRIVE WR SYN [AX=Z KEY=MON_WINDOW VAL=4294967295 WAIT]\n"
+        "N30 G100 G90 Z100 F100\nN40 M30"
+    )
+    page = report(stop, program, plc=[])
+    assert "FIXED_STOP. 0 ms is the instant of the measured value" in page
+    assert "<b>CNC</b>" not in page
+
+
 def test_an_error_of_the_cnc_stands_in_a_table() -> None:
     page = report({"axis.Z.kenngr.messachse": 0}, "N10 G100 G90 Z200 F100\nN20 M30", plc=[])
     assert '<td class="t error">error</td>' in page

@@ -37,8 +37,14 @@ def move_axis(servo: Rows, axis: int, sub_steps: int, time: float, cycle: float)
 
     Servo: position P with velocity feed-forward, speed PI, torque clamp that holds the integrator. Mechanics:
     friction with stiction, fixed stop, inertia, semi-implicit Euler. The angles go into `angles`.
+    An axis at rest whose last cycle changed nothing would come out the same again, and is left as it is.
     """
     row = servo[axis]
+    whole = servo_span(servo, axis)
+    limit = min(row["torque_limit_permille"], row["peak_permille"]) * 1e-3 * row["rated_torque"]
+    if row["resting_limit"] == limit and whole == 0.0:
+        row["status_flags"] |= row["resting_flags"]
+        return
     angles = row["angles"]
     angle = row["angle"]
     speed = row["speed"]
@@ -48,7 +54,6 @@ def move_axis(servo: Rows, axis: int, sub_steps: int, time: float, cycle: float)
     kv = row["kv"]
     gain = row["speed_gain"]
     integral_gain = row["speed_integral_gain"]
-    limit = min(row["torque_limit_permille"], row["peak_permille"]) * 1e-3 * row["rated_torque"]
     inertia = row["inertia"]
     viscous = row["viscous"]
     coulomb = row["coulomb"]
@@ -56,7 +61,6 @@ def move_axis(servo: Rows, axis: int, sub_steps: int, time: float, cycle: float)
     side = row["stop_side"]
     stop_angle = row["stop_angle"]
     demand_from = row["demand_from"]
-    whole = servo_span(servo, axis)
     feed_forward = whole / cycle
     lowest = angle
     highest = angle
@@ -96,6 +100,15 @@ def move_axis(servo: Rows, axis: int, sub_steps: int, time: float, cycle: float)
         angles[sub + 1] = angle
         lowest = min(lowest, angle)
         highest = max(highest, angle)
+    rests = (
+        whole == 0.0
+        and speed == 0.0
+        and row["speed"] == 0.0
+        and angle == row["angle"]
+        and integrator == row["integrator"]
+    )
+    row["resting_limit"] = limit if rests else -1.0
+    row["resting_flags"] = flags
     row["angle"] = angle
     row["speed"] = speed
     row["integrator"] = integrator
@@ -110,6 +123,7 @@ def rest_axis(servo: Rows, axis: int, sub_steps: int) -> None:
     """Let an axis without power stand (its brake holds)."""
     row = servo[axis]
     angle = row["angle"]
+    row["resting_limit"] = -1.0
     row["demand_from"] = float(count(servo, axis, angle))
     row["integrator"] = 0.0
     row["speed"] = 0.0

@@ -130,6 +130,8 @@ SERVO: Final = np.dtype(
         ("probe_signal", "i4", (2,)),
         ("input_signal", "i4", (8,)),
         ("probe_function_seen", "u2"),
+        ("resting_limit", "f8"),  # torque limit under which the axis rests, -1 while it does not
+        ("resting_flags", "u2"),
         ("angle_low", "f8"),  # rad, least and greatest angle of the cycle
         ("angle_high", "f8"),
         ("angles", "f8", (SUB_STEPS + 1,)),  # rad, at the borders of the cycle's sub-steps
@@ -303,6 +305,7 @@ class MachineRows:
             edges=np.zeros(2, np.int64),
         )
         rows.servo["probe_signal"] = -1
+        rows.servo["resting_limit"] = -1.0
         rows.servo["input_signal"] = -1
         rows.signal["forced"] = -1
         rows.channel["signal"] = -1

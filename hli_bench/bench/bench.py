@@ -22,9 +22,6 @@ from hli_bench.runtime.engine import Engine, LocalLink, Observer
 from hli_bench.shells.pacing import RealPace, Stopwatch
 from hli_bench.shells.processes import PlcProcess, free_endpoint
 from hli_bench.shells.zenoh_server import HliServer
-from hli_bench.wire.can import CanFrame
-from hli_bench.wire.hli import Commands
-from hli_bench.wire.signals import Edge
 
 START_UP_CYCLES: Final = 2000
 """Cycles within which all drives must have come into operation."""
@@ -64,7 +61,7 @@ class Bench:
         self.engine = self._engine(machine, settings or {}, can, processes=processes)
         self.engine.observers += observers
         self._tap = _Tap(on_record)
-        self.engine.observers.append(self._tap)
+        self.engine.listeners.append(self._tap)
         self._endpoint = zenoh
         self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
         self._pace = RealPace(self.config.cycle_ns) if pace == "real" else None
@@ -233,24 +230,12 @@ def plc_configs(config: MachineConfig, scripts: Sequence[str | Path] | None) -> 
 
 
 class _Tap:
-    """Observer of the bench itself: gathers records for the result, hands them on as they come."""
+    """Listener of the bench itself: gathers records for the result, hands them on as they come."""
 
     def __init__(self, on_record: OnRecord | None) -> None:
         self._on_record = on_record
         self.door: HliDoor | None = None
         self.collector: Collector | None = None
-
-    def cycles(self, first: int, count: int) -> None:
-        """Nothing to gather."""
-
-    def frames(self, cycle: int, frames: Sequence[CanFrame]) -> None:
-        """Nothing to gather."""
-
-    def edges(self, edges: Sequence[Edge]) -> None:
-        """Nothing to gather."""
-
-    def commands(self, commands: Commands) -> None:
-        """Nothing to gather."""
 
     def emitted(self, cycle: int, records: Sequence[Emitted]) -> None:
         """Gather what belongs to the running program."""

@@ -57,8 +57,18 @@ class PlcPort(Protocol):
         """Run once on the images of `cycle`; None when there is no answer (the PLC is gone)."""
 
 
-class Observer(Protocol):
-    """Whoever records: is told what happened, cycle by cycle or in blocks."""
+class Listener(Protocol):
+    """Whoever wants to hear what the kernel emits and which writes were refused."""
+
+    def emitted(self, cycle: int, records: Sequence[Emitted]) -> None:
+        """The kernel emitted something."""
+
+    def refused(self, cycle: int, refusals: Sequence[Refusal]) -> None:
+        """Writes were refused."""
+
+
+class Observer(Listener, Protocol):
+    """Whoever records: is also told what happened, cycle by cycle or in blocks."""
 
     def cycles(self, first: int, count: int) -> None:
         """Cycles `first` .. `first + count - 1` stand in the kernel's log ring."""
@@ -69,14 +79,8 @@ class Observer(Protocol):
     def edges(self, edges: Sequence[Edge]) -> None:
         """Signals changed."""
 
-    def emitted(self, cycle: int, records: Sequence[Emitted]) -> None:
-        """The kernel emitted something."""
-
     def commands(self, commands: Commands) -> None:
         """A PLC wrote."""
-
-    def refused(self, cycle: int, refusals: Sequence[Refusal]) -> None:
-        """Writes were refused."""
 
 
 class LocalLink:
@@ -108,6 +112,7 @@ class Engine:
         self.access = Access(kernel.image)
         self.plcs: list[PlcPort] = []
         self.observers: list[Observer] = []
+        self.listeners: list[Listener] = []
         self.lost: list[str] = []
         self._orders: list[CanFrame] = []
         self._decide = True
@@ -183,18 +188,25 @@ class Engine:
         refusals = self.access.apply(commands)
         for observer in self.observers:
             observer.commands(commands)
-            if refusals:
-                observer.refused(self.cycle, refusals)
+        if refusals:
+            for listener in (*self.observers, *self.listeners):
+                listener.refused(self.cycle, refusals)
         self._decide = True
 
     def _stretch(self, first: int, limit: int) -> int:
         """Return how many cycles from `first` on may be strided over, 0 when frames have to pass."""
         if self._orders or self._new_words:
             return 0
-        room = min(self.link.quiet(first), limit - self.cycle, LOG_CYCLES)
-        for plc in self.plcs:
-            room = min(room, plc.period_cycles - self.cycle % plc.period_cycles)
-        return min(room, self.link.image_horizon(first)) if room > 0 else 0
+        room = self.link.quiet(first)
+        if room <= 0:
+            return 0
+        return min(room, limit - self.cycle, self._next_tick(), LOG_CYCLES, self.link.image_horizon(first))
+
+    def _next_tick(self) -> int:
+        """Return in how many cycles the next PLC task is due."""
+        if not self.plcs:
+            return LOG_CYCLES
+        return min([plc.period_cycles - self.cycle % plc.period_cycles for plc in self.plcs])
 
     def _word_bytes(self) -> bytes:
         """Control and latch control words as sent: a cycle in which they change is not quiet."""
@@ -239,8 +251,8 @@ class Engine:
         self._tell_frames(cycle, orders)
         emitted = self.kernel.take_emitted()
         if emitted:
-            for observer in self.observers:
-                observer.emitted(cycle, emitted)
+            for listener in (*self.observers, *self.listeners):
+                listener.emitted(cycle, emitted)
 
     def _complete(self, first: int, count: int) -> None:
         """Cycles are done: tell the observers, run the PLC tasks that are due."""
@@ -251,8 +263,11 @@ class Engine:
             if edges:
                 observer.edges(edges)
         due = [plc for plc in self.plcs if self.cycle % plc.period_cycles == 0]
-        if not due:
-            return
+        if due:
+            self._run_plcs(due)
+
+    def _run_plcs(self, due: Sequence[PlcPort]) -> None:
+        """Run the tasks that are due: all of them see the same images."""
         self.kernel.publish()
         io = self.link.images(self.cycle)
         answers = [(plc, plc.tick(self.cycle, self.dc_ns, self.kernel.image.data, io)) for plc in due]

@@ -17,7 +17,7 @@ def add(commands: Commands) -> None:
     parser.set_defaults(execute=execute)
 
 
-def execute(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - every command takes its arguments
+def execute(arguments: argparse.Namespace) -> int:
     """Print the findings and, for those that lack something, the advice."""
     from hli_bench.shells.environment import findings
 

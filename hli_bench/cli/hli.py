@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from hli_bench.base.errors import InputError
 from hli_bench.cli import tables
 from hli_bench.cli.options import Commands, add_connect
 
@@ -63,7 +64,10 @@ def get_value(arguments: argparse.Namespace) -> int:
 def set_value(arguments: argparse.Namespace) -> int:
     """Write a value."""
     with _client(arguments) as client:
-        client.set(arguments.path, arguments.value)
+        try:
+            client.set(arguments.path, arguments.value)
+        except InputError as error:
+            raise InputError(f"{arguments.path}: {error.message}") from error
     return 0
 
 

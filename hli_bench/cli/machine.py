@@ -30,7 +30,7 @@ def add(commands: Commands) -> None:
     schema.set_defaults(execute=print_schema)
 
 
-def print_schema(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - every command takes its arguments
+def print_schema(arguments: argparse.Namespace) -> int:
     """Print the schema."""
     from hli_bench.bench import schema
 

@@ -103,13 +103,24 @@ def bench_options(arguments: argparse.Namespace) -> BenchOptions:
     if can.startswith("socketcand:"):
         raise NotEmulated(f"--can {can}")
     return BenchOptions(
-        machine=arguments.machine or DEFAULT_MACHINE,
+        machine=machine_name(arguments.machine or DEFAULT_MACHINE),
         settings=parse_set(arguments.set or []),
         plc=None if arguments.plc is None else plc_scripts(arguments.plc),
         pace=arguments.pace or arguments.default_pace,
         can=can,
         zenoh=arguments.zenoh or arguments.default_zenoh,
     )
+
+
+def machine_name(text: str) -> str:
+    """Return the text of `--machine` if it is a folder or a machine of the package. Raises InputError."""
+    if not Path(text).is_dir():
+        try:
+            data_file("machines", text)
+        except InputError as error:
+            message = f"{text!r} is neither a machine of the package nor a folder with machine.toml"
+            raise InputError(message, file="--machine") from error
+    return text
 
 
 def plc_scripts(texts: list[str]) -> list[str]:

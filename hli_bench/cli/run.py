@@ -3,12 +3,12 @@
 import argparse
 import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from hli_bench.base.errors import InputError, NotEmulated
+from hli_bench.base.errors import InputError
 from hli_bench.cli.options import BenchOptions, Commands, add_bench, bench_options, supplied_file
 
 if TYPE_CHECKING:
@@ -73,8 +73,6 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.connect:
         return _run_connected(program, arguments)
     options = bench_options(arguments)
-    if arguments.report is not None:
-        raise NotEmulated("--report")
     for name in OUTPUTS:
         prepare(getattr(arguments, name), name)
     result = _run(program, options, arguments)
@@ -131,13 +129,17 @@ def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) ->
         for note in bench.config.notes:
             if note.severity == "warning":
                 print(f"warning: {note}", file=sys.stderr)
+        report = None if arguments.report is None else _reporter(bench)
         with _recorders(bench, options, arguments):
             bench.start_up()
             first = bench.engine.cycle
             try:
-                return bench.run(program)
+                result = bench.run(program)
             except KeyboardInterrupt:
-                return tap.aborted(bench, str(program), bench.engine.cycle - first)
+                result = tap.aborted(bench, str(program), bench.engine.cycle - first)
+        if report is not None:
+            report(result, arguments.report)
+        return result
 
 
 def _buses(options: BenchOptions) -> dict[str, Any]:
@@ -199,6 +201,22 @@ def _recorders(bench: "Bench", options: BenchOptions, arguments: argparse.Namesp
             candump = CandumpLog(Path(arguments.can_log), setup, log)
             bench.engine.observers.append(open_files.enter_context(closing(candump)))
         yield
+
+
+def _reporter(bench: "Bench") -> Callable[["Result", str], None]:
+    """Attach what the report is made of; return what writes it into a file."""
+    from hli_bench.runtime.recording import Recording, input_taps
+    from hli_bench.scope.report import report_html
+
+    recording = Recording(bench.kernel, input_taps(bench.config.terminals))
+    bench.engine.observers.append(recording)
+
+    def write(result: "Result", file: str) -> None:
+        recording.plcs = {plc.name: plc.period_cycles * bench.config.cycle_ns for plc in bench.engine.plcs}
+        page = report_html(recording, result.to_dict(), bench.config.name)
+        Path(file).write_text(page, encoding="utf-8")
+
+    return write
 
 
 # -- a bench that is up -----------------------------------------------------------------------------------

@@ -156,14 +156,16 @@ class Drive:
     def cyclic_signature(self) -> bool:
         """Whether numbers may pass between rows without frames.
 
-        True while the node is OPERATIONAL with the default telegram, follows its target and takes touch probe
+        True while the node is OPERATIONAL with the telegram for one of its probing inputs, follows its target and takes touch probe
         functions as they come. `encode_cycle` then gives the frames that would have been sent.
         """
         changes = self.device.pdos.changes
         if changes != self._signature_changes:
             self._signature_changes = changes
-            default = telegram.default_signature(self.node_id)
-            self._signature_default = self.device.pdos.signature == default
+            configured = self.device.pdos.signature
+            inputs = [one for one in (0, 1) if configured == telegram.signature(self.node_id, one)]
+            self._signature_default = bool(inputs)
+            self._row["telegram_input"] = inputs[0] if inputs else 0
         operational = self.device.nmt.state is NmtState.OPERATIONAL
         return (
             operational and self._signature_default and not self.holding and self._sources == _DEFAULT_SOURCES

@@ -38,12 +38,20 @@ RPDOS: Final = (
     Telegram(0x200, ((objects.CONTROLWORD, 16), (objects.TARGET_POSITION, 32))),
     Telegram(0x300, ((objects.PROBE_FUNCTION, 16),)),
 )
-TPDOS: Final = (
-    Telegram(0x180, ((objects.STATUSWORD, 16), (objects.POSITION_ACTUAL, 32))),
-    Telegram(0x280, ((objects.PROBE_STATUS, 16), (objects.LATCHES[0], 32))),
-    Telegram(0x380, ((objects.TORQUE_ACTUAL, 16), (objects.FOLLOWING_ERROR, 32))),
-    Telegram(0x480, ((objects.DIGITAL_INPUTS, 32), (objects.LATCHES[1], 32))),
-)
+
+
+def tpdos(probing_input: int = 0) -> tuple[Telegram, ...]:
+    """Return the TPDOs that carry the latches of a probing input (0 or 1); 0 is the default map."""
+    positive, negative = objects.LATCHES[2 * probing_input : 2 * probing_input + 2]
+    return (
+        Telegram(0x180, ((objects.STATUSWORD, 16), (objects.POSITION_ACTUAL, 32))),
+        Telegram(0x280, ((objects.PROBE_STATUS, 16), (positive, 32))),
+        Telegram(0x380, ((objects.TORQUE_ACTUAL, 16), (objects.FOLLOWING_ERROR, 32))),
+        Telegram(0x480, ((objects.DIGITAL_INPUTS, 32), (negative, 32))),
+    )
+
+
+TPDOS: Final = tpdos()
 _UNUSED_RPDOS: Final = (0x400, 0x500)
 _INVALID: Final = 1 << 31
 _EVERY_SYNC: Final = 1
@@ -54,11 +62,11 @@ _TORQUE_AND_ERROR: Final = struct.Struct("<hi")
 _INPUTS_AND_LATCH: Final = struct.Struct("<Ii")
 
 
-def default_signature(node_id: int) -> tuple[tuple[int, int, tuple[int, ...]], ...]:
-    """Return what `PdoSet.signature` is while the default telegram is configured."""
+def signature(node_id: int, probing_input: int = 0) -> tuple[tuple[int, int, tuple[int, ...]], ...]:
+    """Return what `PdoSet.signature` is while the telegram for a probing input is configured."""
     used = [(pdo.cob_id + node_id, _EVERY_SYNC, pdo.mapping) for pdo in RPDOS]
     unused = [(cob_id + node_id | _INVALID, _EVERY_SYNC, ()) for cob_id in _UNUSED_RPDOS]
-    sent = [(pdo.cob_id + node_id | NO_RTR, _EVERY_SYNC, pdo.mapping) for pdo in TPDOS]
+    sent = [(pdo.cob_id + node_id | NO_RTR, _EVERY_SYNC, pdo.mapping) for pdo in tpdos(probing_input)]
     return (*used, *unused, *sent)
 
 

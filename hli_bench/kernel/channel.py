@@ -254,6 +254,11 @@ class Channel:
             if settings.reset:
                 self._probes[axis] = measurement.default_probe(core, axis)
                 continue
+            if settings.input is not None and settings.input != probe.input:
+                if probe.signal is ProbingSignal.DRIVE or settings.signal == ProbingSignal.DRIVE:
+                    number = core.axis(axis).number
+                    core.report(position_errors.INPUT_NOT_CHANGEABLE, settings.source, number, axis=axis)
+                    return
             self._probes[axis] = Probe(
                 ProbingSignal(settings.signal) if settings.signal else probe.signal,
                 settings.input if settings.input is not None else probe.input,

@@ -244,5 +244,5 @@ def write_log(axis: Rows, log: Rows, slot: int) -> None:
         out["torque_permille"] = row["torque_permille"]
         out["following_error"] = row["following_error"]
         out["position"] = wrap32(row["feedback"])
-        for i in range(4):
+        for i in range(2):
             out["latch"][i] = row["latch"][i]

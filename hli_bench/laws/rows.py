@@ -72,7 +72,7 @@ AXIS: Final = np.dtype(
         ("statusword", "u2"),
         ("probe_function", "u2"),
         ("probe_status", "u2"),
-        ("latch", "i4", (4,)),  # TP1 pos, TP1 neg, TP2 pos, TP2 neg, increments
+        ("latch", "i4", (2,)),  # latched at the positive / negative edge of the telegram's probing input
         ("digital_inputs", "u4"),
         ("torque_permille", "i2"),
         ("following_error", "i4"),
@@ -129,6 +129,7 @@ SERVO: Final = np.dtype(
         # wiring: index of the signal, -1 for none
         ("probe_signal", "i4", (2,)),
         ("input_signal", "i4", (8,)),
+        ("telegram_input", "u1"),  # probing input (0, 1) whose latches the telegrams carry
         ("probe_function_seen", "u2"),
         ("resting_limit", "f8"),  # torque limit under which the axis rests, -1 while it does not
         ("resting_flags", "u2"),
@@ -220,7 +221,7 @@ LOG: Final = np.dtype(
         ("target", "i4"),
         ("position", "i4"),
         ("following_error", "i4"),
-        ("latch", "i4", (4,)),
+        ("latch", "i4", (2,)),
         ("digital_inputs", "u4"),
         ("controlword", "u2"),
         ("statusword", "u2"),

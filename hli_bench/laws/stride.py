@@ -41,8 +41,9 @@ def exchange_in(axis: Rows, servo: Rows) -> None:
         kernel["digital_inputs"] = drive["digital_inputs"]
         kernel["torque_permille"] = drive["torque_permille"]
         kernel["following_error"] = drive["following_error"]
-        for i in range(4):
-            kernel["latch"][i] = drive["latch"][i]
+        slot = 2 * drive["telegram_input"]
+        for i in range(2):
+            kernel["latch"][i] = drive["latch"][slot + i]
 
 
 @law

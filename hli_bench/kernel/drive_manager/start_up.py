@@ -12,9 +12,11 @@ from hli_bench.base.errors import BenchError
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.drive_manager.objects import ObjectChannel, Order
+from hli_bench.kernel.drive_manager.telegram import second_input_telegrams
 from hli_bench.kernel.sequence import END, Level, Phase, Table, Then, Until
 from hli_bench.kernel.watches import statusword
 from hli_bench.laws.rows import FOLLOW, PATH
+from hli_bench.manual.axis.fallbacks import effective_input
 from hli_bench.protocols.canopen.aborts import SdoAbort
 from hli_bench.protocols.canopen.cia402 import (
     CYCLIC_SYNCHRONOUS_POSITION,
@@ -25,6 +27,7 @@ from hli_bench.protocols.canopen.cia402 import (
 )
 from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame
 
+SECOND_INPUT: Final = 2
 HEARTBEAT_MS: Final = 1000
 """Producer heartbeat that the CNC asks of its drives (decided here)."""
 
@@ -57,6 +60,10 @@ def _configure(drive: Drive) -> None:
     row["mode"] = FOLLOW
     drive.order(*PRODUCER_HEARTBEAT, struct.pack("<H", HEARTBEAT_MS))
     drive.order(*MODE_OF_OPERATION, struct.pack("<b", CYCLIC_SYNCHRONOUS_POSITION))
+    axis = drive.core.axis(drive.axis)
+    if effective_input(axis.params) == SECOND_INPUT:
+        for index, subindex, data in second_input_telegrams(axis.node):
+            drive.order(index, subindex, data)
 
 
 def _configured(drive: Drive) -> Until:

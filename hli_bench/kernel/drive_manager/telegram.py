@@ -11,10 +11,13 @@ from typing import Any, Final
 
 from hli_bench.base.ids import NodeId
 from hli_bench.laws.rows import Rows
+from hli_bench.protocols.canopen.cia402 import DIGITAL_INPUTS, LATCHES_2, PROBE_STATUS
+from hli_bench.protocols.canopen.pdo import INVALID, MAPPING_OFFSET, NO_RTR, TPDO_COMMUNICATION
 from hli_bench.wire.can import CanFrame
 
 _WORD_AND_LONG: Final = Struct("<Hi")
 _WORD: Final = Struct("<H")
+_LONG: Final = Struct("<I")
 _TORQUE_AND_ERROR: Final = Struct("<hi")
 _INPUTS_AND_LATCH: Final = Struct("<Ii")
 
@@ -49,6 +52,21 @@ _TAKE: Final[Mapping[int, tuple[int, Callable[[Rows, bytes], None]]]] = {
     0x380: (_TORQUE_AND_ERROR.size, _torque),
     0x480: (_INPUTS_AND_LATCH.size, _inputs),
 }
+
+
+def second_input_telegrams(node: NodeId) -> list[tuple[int, int, bytes]]:
+    """Return the SDO writes that make TPDO2 and TPDO4 carry the latches of the second probing input."""
+    writes: list[tuple[int, int, bytes]] = []
+    for pdo, entries in ((1, (PROBE_STATUS, LATCHES_2[0])), (3, (DIGITAL_INPUTS, LATCHES_2[1]))):
+        cob_id = 0x180 + 0x100 * pdo + node | NO_RTR
+        communication = TPDO_COMMUNICATION[pdo]
+        mapping = communication + MAPPING_OFFSET
+        writes.append((communication, 1, _LONG.pack(cob_id | INVALID)))
+        writes.append((mapping, 0, bytes((0,))))
+        writes += [(mapping, place, _LONG.pack(entry)) for place, entry in enumerate(entries, 1)]
+        writes.append((mapping, 0, bytes((len(entries),))))
+        writes.append((communication, 1, _LONG.pack(cob_id)))
+    return writes
 
 
 class ActualTelegrams:

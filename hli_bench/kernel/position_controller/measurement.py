@@ -219,17 +219,19 @@ def _keep(run: Run, axis: AxisIndex, probe: Probe, position: float, dc_ns: Ns) -
         dc_ns=dc_ns,
         edge=probe.edge.value,
     )
-    run.before_target[axis] = _path_of(run, axis, position) <= run.target_path + 0.5
+    run.before_target[axis] = _before_target(run, axis, position)
     core.emitted.append(run.values[axis])
     core.show(axis, "lr_state/measure_value_ok_r", True)
 
 
-def _path_of(run: Run, axis: AxisIndex, position: float) -> float:
-    """Return the path of the run that belongs to a position; of an axis that stands, the path done so far."""
+def _before_target(run: Run, axis: AxisIndex, position: float) -> bool:
+    """Tell whether a position lies before the programmed target: only behind one with P-AXIS-00467 it may not."""
     segment = run.core.rows.segment[run.segment % SEGMENTS]
+    if segment["length"] <= run.target_path:
+        return True
     if not segment["moves"][axis]:
-        return run.core.path.done
-    return float((position - segment["start"][axis]) / segment["direction"][axis])
+        return run.core.path.done <= run.target_path
+    return bool((position - segment["start"][axis]) / segment["direction"][axis] <= run.target_path)
 
 
 def _all_latched(phase: str, run: Run) -> str:

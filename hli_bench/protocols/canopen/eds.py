@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
+from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -115,8 +116,9 @@ def load(path: Path) -> ObjectDictionary:
     return parse_text(text, str(path))
 
 
+@lru_cache(maxsize=64)
 def parse_text(text: str, file: str = "") -> ObjectDictionary:
-    """Parse the text of an EDS or DCF. Raises InputError with `file` and line."""
+    """Parse the text of an EDS or DCF, once a process for the same text. Raises InputError with `file` and line."""
     return _Reader(file, _sections(text, file)).dictionary()
 
 

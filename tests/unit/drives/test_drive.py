@@ -406,8 +406,9 @@ class TestRowToRow:
         for _ in range(50):
             logged = self.random_cycle(generator)
             row["status_flags"] = generator.integers(0, 0x10000)
-            for name in ("position", "probe_status", "latch", "digital_inputs", "torque_permille"):
+            for name in ("position", "probe_status", "digital_inputs", "torque_permille"):
                 row[name] = logged[name]
+            row["latch"][:2] = logged["latch"]
             row["following_error"] = logged["following_error"]
             logged["statusword"] = enabled.statusword
             frames = enabled.encode_cycle(logged)

@@ -104,7 +104,7 @@ def _latched(run: Run) -> Until:
 def _reference_latched(run: Run) -> None:
     """The zero pulse's count becomes the reference position, whatever the axis did since."""
     row = run.core.row(run.axis)
-    raw = int(row["latch"][2 * (effective_input(run.setup.params) - 1)])
+    raw = int(row["latch"][0])
     feedback = int(row["feedback"])
     reference(run, feedback + ((raw - feedback + 0x80000000) % 0x100000000 - 0x80000000))
     row["probe_function"] = 0

@@ -45,7 +45,7 @@ def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
 def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:
     """The latched position; the telegram carries no time, so it is that of the cycle that brought the value."""
     row = core.row(axis)
-    raw = int(row["latch"][2 * (probing_input - 1) + SLOT[edge]])
+    raw = int(row["latch"][SLOT[edge]])
     increments = int(row["feedback"]) + _wrapped(raw - int(row["feedback"]))
     return float((increments - row["reference"]) / row["increments_per_unit"]), core.dc_now
 

@@ -17,7 +17,8 @@ help: ## Lists the targets
 run: .venv/.runtime ## Runs the probing program on the machine demo and writes out/report.html
 	@mkdir -p out
 	$(BIN)/hli-bench run programs/probe.nc --set plc.0.process=true \
-	  --report out/report.html --result out/result.json --can-log out/can.log
+	  --set plant.probe.Z.face_mm=100 --set plant.probe.Z.material=below \
+	  --report out/report.html --result out/result.json --trace out/trace.mcap
 
 test: lint pytest $(if $(filter yes,$(VCAN)),test-vcan) ## Lint, types, import contracts and all tests
 

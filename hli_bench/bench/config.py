@@ -3,8 +3,9 @@
 import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final, Literal, TypeVar, cast
+from typing import Any, Final, Literal, NamedTuple, TypeVar, cast
 
 from hli_bench.base.errors import InputError, NotEmulated
 from hli_bench.base.ids import AxisIndex, AxisNumber, NodeId
@@ -145,14 +146,7 @@ def load(machine: str | Path, overrides: Mapping[str, object] | None = None) -> 
     config = loader.config()
     loader.finish()
     assert config is not None
-    not_built = [
-        f"{owner}: {text}"
-        for owner, params in (
-            ("channel", config.channel),
-            *((f"axis.{a.name}", a.params) for a in config.axes),
-        )
-        for text in refusals(params)
-    ]
+    not_built = loader.refused
     not_built += [f"fault {fault.kind}" for fault in config.faults if fault.kind not in BUILT_FAULTS]
     if not_built:
         raise NotEmulated("; ".join(not_built))
@@ -170,6 +164,8 @@ class _Loader:
     values: dict[str, Plain] = field(default_factory=dict)
     lists: dict[str, dict[str, Given]] = field(default_factory=dict)
     """List parameters that stand in machine.toml or an override, by owner (`channel`, `axis.Z`)."""
+    refused: list[str] = field(default_factory=list)
+    """Parameter values that the bench cannot emulate."""
 
     def config(self) -> MachineConfig | None:
         """Return the machine, or None when something is wrong."""
@@ -221,13 +217,11 @@ class _Loader:
 
     def _take(self, path: str, given: Given, axes: Sequence[str]) -> None:
         """Check one value and keep it under its path."""
-        for expression, key in PATTERNS:
-            match = expression.fullmatch(path)
-            if match is not None and self._names_hold(match.groupdict(), axes, path, given):
-                self._keep(path, key, given)
-                return
-            if match is not None:
-                return
+        found = _key(path)
+        if found is not None:
+            if self._names_hold(found[1], axes, path, given):
+                self._keep(path, found[0], given)
+            return
         owner, rest = _list_path(path)
         if owner == "channel" or (owner and owner.removeprefix("axis.") in axes):
             self.lists.setdefault(owner, {})[rest] = given
@@ -265,7 +259,9 @@ class _Loader:
         """Return a value, in the type of its key, or the default of its key."""
         if path in self.values:
             return self.values[path]
-        return next(key.default for expression, key in PATTERNS if expression.fullmatch(path))
+        found = _key(path)
+        assert found is not None
+        return found[0].default
 
     # -- list files ---------------------------------------------------------------------------------------
 
@@ -276,17 +272,20 @@ class _Loader:
         name = self._value(f"{owner}.list")
         if name:
             values, places = self._list_file(cls, owner, name)
+        changes: dict[str, Value] = {}
         for path, given in self.lists.get(owner, {}).items():
             try:
                 taken = converted(cls, {path: given.value})
             except InputError as error:
                 self._fail(given, f"{owner}.{error.message}")
                 continue
-            values.update(taken)
+            changes.update(taken)
             places.update(dict.fromkeys(taken, given))
-        for path, finding in check_values(cls, values):
+        tree = _built(cast("Any", cls), tuple((values | changes).items()), repr(changes))
+        for path, finding in tree.findings:
             self._found(places[path].error(finding.message), finding.severity)
-        return build(cls, values)
+        self.refused += [f"{owner}: {text}" for text in tree.refused]
+        return cast("P", tree.params)
 
     def _list_file(self, cls: type[Any], owner: str, name: str) -> tuple[dict[str, Value], dict[str, Given]]:
         """Return the values of a list file with their places."""
@@ -297,14 +296,10 @@ class _Loader:
             given = self.given.get(f"{owner}.list")
             self._fail(given, f"{owner}.list: {name!r} is not a readable file of {self.folder}")
             return {}, {}
-        parsed = parse_list(cls, text, str(path))
-        about_values = {finding.message for _, finding in check_values(cls, parsed.values)}
-        for finding in parsed.findings:
-            if finding.message not in about_values:
-                self._found(finding.as_error(), finding.severity)
-        return parsed.values, {
-            key: Given(value, str(path), parsed.lines[key]) for key, value in parsed.values.items()
-        }
+        listed = _listed(cast("Any", cls), text, str(path))
+        for finding in listed.findings:
+            self._found(finding.as_error(), finding.severity)
+        return dict(listed.values), dict(listed.places)
 
     def _found(self, error: InputError, severity: Severity) -> None:
         """Keep a remark about a list: an error stops, the rest is noted."""
@@ -518,6 +513,52 @@ class _Loader:
             stuck = stuck and self.values.get(path.removesuffix("target") + "kind") == "probe_stuck"
             if (wire or stuck) and value and value not in known:
                 self._fail(self.given[path], f"{path}: {value!r} is not a signal ({', '.join(known)})")
+
+
+class _Tree(NamedTuple):
+    """Parameters as built from their values, with what there is to say about them."""
+
+    params: Any
+    findings: Sequence[tuple[str, Finding]]
+    refused: Sequence[str]
+
+
+@lru_cache(maxsize=256)
+def _built(cls: Any, values: tuple[tuple[str, Value], ...], exact: str) -> _Tree:
+    """Build and check parameters, once a process for the same values: benches of a sweep differ in few of them.
+
+    `exact` is what tells values apart that are equal and not the same (0.0 and -0.0).
+    """
+    params = build(cls, dict(values))
+    return _Tree(params, check_values(cls, dict(values)), refusals(params))
+
+
+class _Listed(NamedTuple):
+    """A list file: its values with their places, and findings beside those that checks of values repeat."""
+
+    values: Mapping[str, Value]
+    places: Mapping[str, Given]
+    findings: Sequence[Finding]
+
+
+@lru_cache(maxsize=256)
+def _listed(cls: Any, text: str, file: str) -> _Listed:
+    """Parse a list, once a process for the same text."""
+    parsed = parse_list(cls, text, file)
+    about_values = {finding.message for _, finding in check_values(cls, parsed.values)}
+    places = {key: Given(value, file, parsed.lines[key]) for key, value in parsed.values.items()}
+    findings = [finding for finding in parsed.findings if finding.message not in about_values]
+    return _Listed(parsed.values, places, findings)
+
+
+@lru_cache(maxsize=4096)
+def _key(path: str) -> tuple[Key, Mapping[str, str]] | None:
+    """Return the key of machine.toml that a path is, with the names within it."""
+    for expression, key in PATTERNS:
+        match = expression.fullmatch(path)
+        if match is not None:
+            return key, match.groupdict()
+    return None
 
 
 def _list_path(path: str) -> tuple[str, str]:

@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -39,18 +40,25 @@ def read_toml(path: Path) -> dict[str, Given]:
     """Return the values of a TOML file by dotted path. Raises InputError with file and line."""
     try:
         text = path.read_text(encoding="utf-8")
-        tree = tomllib.loads(text)
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", file=str(path)) from error
     except UnicodeDecodeError as error:
         raise InputError("is not UTF-8 text", file=str(path)) from error
+    return dict(_read_text(text, str(path)))
+
+
+@lru_cache(maxsize=64)
+def _read_text(text: str, file: str) -> Mapping[str, Given]:
+    """Return the values of a TOML text; the same text is read once a process."""
+    try:
+        tree = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         place = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
         line, column = (int(place[1]), int(place[2])) if place else (0, 0)
         message = re.sub(r"\s*\(at [^)]*\)", "", str(error))
-        raise InputError(f"not valid TOML: {message}", str(path), line, column) from error
+        raise InputError(f"not valid TOML: {message}", file, line, column) from error
     lines = line_numbers(text)
-    return {key: Given(value, str(path), _line(lines, key)) for key, value in flatten(tree).items()}
+    return {key: Given(value, file, _line(lines, key)) for key, value in flatten(tree).items()}
 
 
 def line_numbers(text: str) -> dict[str, int]:

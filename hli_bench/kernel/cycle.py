@@ -23,7 +23,7 @@ from hli_bench.manual.errors import hli as hli_errors
 from hli_bench.protocols.canopen.sync import sync_frame
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
 from hli_bench.protocols.hli.image import Image
-from hli_bench.protocols.hli.layout import Layout
+from hli_bench.protocols.hli.layout import layout_of
 from hli_bench.wire.can import CanFrame
 
 _TYPE_NUMBER = {"T": 1, "R": 2, "S": 4}
@@ -37,7 +37,7 @@ class Kernel:
     def __init__(self, setup: KernelSetup) -> None:
         self.setup = setup
         axes = [(axis.number, axis.name, _LAYOUT_KIND[axis.kind]) for axis in setup.axes]
-        self.image = Image(Layout(axes))
+        self.image = Image(layout_of(tuple(axes)))
         defaults = {"release_feedhold": True, "override": FULL_OVERRIDE}
         units = ControlUnits(self.image, defaults)
         self.core = Core.build(setup, self.image, units)

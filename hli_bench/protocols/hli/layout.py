@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from difflib import get_close_matches
+from functools import lru_cache
 from struct import Struct
 from typing import Final, Self
 
@@ -159,6 +160,12 @@ class Layout:
                 self._canonical.setdefault(old, path)
                 for element in by_group[path]:
                     self._canonical.setdefault(f"{old}/{element.member}", element.path)
+
+
+@lru_cache(maxsize=32)
+def layout_of(axes: tuple[tuple[int, str, str], ...]) -> Layout:
+    """Return the layout of these axes and one channel, made once a process: benches of a sweep have the same."""
+    return Layout(axes)
 
 
 def _placed(areas: Sequence[Member]) -> list[Element]:

@@ -64,9 +64,15 @@ class Channel:
         self._latched: dict[AxisIndex, bool] = {}
         self.measured: list[tuple[MeasuredValue, float]] = []
         """Every value this program has measured, with its V.A.MEAS.PCS.VALUE in mm."""
-        self.source = Source("", 0)
+        self._source = Source("", 0)
+        self._segment_source: dict[int, Source] = {}
         self.running = False
         self.completed = False
+
+    @property
+    def source(self) -> Source:
+        """The block in execution."""
+        return self._segment_source.get(self._core.path.segment, self._source)
 
     def start(self, decoder: Decoder) -> None:
         """Begin a program."""
@@ -76,6 +82,7 @@ class Channel:
         self._answer = None
         self._barrier = self._postponed = self._activity = None
         self._texts.clear()
+        self._segment_source.clear()
         self._measured.clear()
         self._latched.clear()
         self.measured.clear()
@@ -175,17 +182,21 @@ class Channel:
             self._wake.append(self._core.watches.watch(segment_reached(refill)))
             return False
         self._postponed = None
-        self.source = line.source
+        self._source = line.source
         if not self._may_move(line.source, line.target):
             return True
-        self._core.preparation.line(line)
+        number = self._core.preparation.line(line)
+        if number is not None:
+            self._segment_source.pop(number - SEGMENTS, None)
+            self._segment_source[number] = line.source
         return True
 
     def _behind_motion(self, item: Item) -> None:
         """Execute what must not begin before all motion is done."""
         core = self._core
         assert not isinstance(item, Line | Text | MeasureSettings | CncError)
-        self.source = item.source
+        self._source = item.source
+        self._segment_source.clear()
         match item:
             case Flush():
                 self._answer = self._state()
@@ -254,11 +265,11 @@ class Channel:
             if settings.reset:
                 self._probes[axis] = measurement.default_probe(core, axis)
                 continue
-            if settings.input is not None and settings.input != probe.input:
-                if probe.signal is ProbingSignal.DRIVE or settings.signal == ProbingSignal.DRIVE:
-                    number = core.axis(axis).number
-                    core.report(position_errors.INPUT_NOT_CHANGEABLE, settings.source, number, axis=axis)
-                    return
+            other_input = settings.input is not None and settings.input != probe.input
+            if other_input and ProbingSignal.DRIVE in (probe.signal, settings.signal):
+                number = core.axis(axis).number
+                core.report(position_errors.INPUT_NOT_CHANGEABLE, settings.source, number, axis=axis)
+                return
             self._probes[axis] = Probe(
                 ProbingSignal(settings.signal) if settings.signal else probe.signal,
                 settings.input if settings.input is not None else probe.input,

@@ -18,6 +18,9 @@ from hli_bench.wire.signals import Edge
 
 FACE_Z = {"plant.probe.Z.face_mm": 100.0, "plant.probe.Z.material": "below"}
 
+FOLLOWING = 10
+"""Cycles of a start-up in which set points follow the actual positions."""
+
 PROBE_SCRIPT = '''
 from hli_bench.plc import Plc
 
@@ -80,8 +83,10 @@ class Recorder:
         return self.log[field][:, axis]
 
     def velocity(self, axis: int) -> np.ndarray:
-        """Velocity of the set point in mm/s over each cycle of 1 ms."""
-        return np.diff(self.column("command", axis)) * 1e-4 / 1e-3
+        """Velocity of the set point in mm/s over each cycle of 1 ms; 0 while it follows the drive at power-on."""
+        velocity = np.diff(self.column("command", axis)) * 1e-4 / 1e-3
+        velocity[:FOLLOWING] = 0.0
+        return velocity
 
     def cycle_of(self, kind: type) -> list[int]:
         return [cycle for cycle, record in self.records if isinstance(record, kind)]
@@ -120,6 +125,7 @@ def make() -> Iterator[Make]:
             bench = stack.enter_context(Bench("demo", settings or {}, observers=observers, **options))
             if recorder is not None:
                 recorder.kernel = bench.kernel
+                bench.advance(2 * FOLLOWING)
             return bench
 
         yield build

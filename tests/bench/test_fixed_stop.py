@@ -27,9 +27,7 @@ def run(bench: Bench, block: str = "G100 Z110 F600"):
     return bench.run(f"%stop\n#MEAS MODE[7]\nG00 Z100\n{LIMITED}N50 {block}\nN60 M30\n")
 
 
-@pytest.mark.req(
-    "M-031", "M-138", "M-140", "M-142", "M-146", "M-165", "M-166", "M-167", "M-168", "M-169"
-)
+@pytest.mark.req("M-031", "M-138", "M-140", "M-142", "M-146", "M-165", "M-166", "M-167", "M-168", "M-169")
 def test_example_of_the_manual(make, recorder):
     bench = make(AT_STOP, recorder=recorder)
     result = bench.run(PROGRAM)
@@ -99,7 +97,9 @@ def test_axis_returns_to_the_measured_position(make, recorder):
 def test_torque_is_really_limited(make, recorder, percent):
     """The axis presses with the limited torque and no more: the depth in the stop's spring says so."""
     bench = make(AT_STOP | {f"{DETECT}.min_time": 200_000}, recorder=recorder)
-    program = f"%p\n#MEAS MODE[7]\nG00 Z100\n{LIMITED.replace('VAL=10 ', f'VAL={percent} ')}G100 Z120 F600\nM30\n"
+    program = (
+        f"%p\n#MEAS MODE[7]\nG00 Z100\n{LIMITED.replace('VAL=10 ', f'VAL={percent} ')}G100 Z120 F600\nM30\n"
+    )
     result = bench.run(program)
 
     torque = recorder.column("torque_permille", Z)

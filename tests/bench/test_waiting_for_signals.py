@@ -60,7 +60,10 @@ def test_run_of_two_axes_waits_for_both_signals(make, own_signals, errors, only)
     half = alone.run(program)
 
     assert result.completed
-    assert [axis for _, axis, _ in values(result)] == ["X", "Y"] or [a for _, a, _ in values(result)] == ["Y", "X"]
+    assert [axis for _, axis, _ in values(result)] == ["X", "Y"] or [a for _, a, _ in values(result)] == [
+        "Y",
+        "X",
+    ]
     assert result.variables["V.A.MERF.X"] == result.variables["V.A.MERF.Y"] == 1.0
     assert [axis for _, axis, _ in values(half)] == ["XY"[only - 1]]
     assert alone.position_mm("X") == pytest.approx(15.0, abs=1e-3)
@@ -70,7 +73,7 @@ def test_run_of_two_axes_waits_for_both_signals(make, own_signals, errors, only)
 @pytest.mark.req("M-002", "M-041", "M-042", "M-043")
 def test_example_standard_waits_for_the_moved_axes_only(make, script):
     """The PLC gives a signal only while the run of the very axis is active: N30 X, N50 Y, N70 X and Y."""
-    text = '''
+    text = """
 from hli_bench.plc import Plc
 
 class Signals(Plc):
@@ -85,7 +88,7 @@ class Signals(Plc):
             axis = hli.ax[n]
             self.since[n] = self.since[n] + 1 if axis.lr_state.measurement_active_r else 0
             axis.lr_mc_control.probing_signal.command_w = self.since[n] > 100 * n
-'''
+"""
     result = make(BY_PLC, plc=[script(text)]).run(STANDARD)
 
     assert result.completed, result.errors
@@ -102,7 +105,7 @@ class Signals(Plc):
 @pytest.mark.parametrize("missing", [None, 1, 2, 3])
 def test_coordinate_system_needs_the_signal_of_all_main_axes(make, own_signals, script, angle, missing):
     """%Measurement run CS: X, Y and Z must deliver, Z does not even move."""
-    text = '''
+    text = """
 from hli_bench.plc import Plc
 
 class Signals(Plc):
@@ -116,7 +119,7 @@ class Signals(Plc):
         self.since = self.since + 1 if hli.ax[1].lr_state.measurement_active_r else 0
         for n in (1, 2, 3):
             hli.ax[n].lr_mc_control.probing_signal.command_w = n != MISSING and self.since > 200
-'''
+"""
     bench = make(BY_PLC, plc=[script(text.replace("MISSING", repr(missing)))])
     result = bench.run(
         f"%Measurement run CS\nN10 G00 X0 Y1 Z0\nN20 #CS ON[0,0,0,0,0,{angle}]\nN30 G100 X10 F500\n"
@@ -134,7 +137,9 @@ class Signals(Plc):
 def test_values_of_all_axes_are_mapped_into_the_system(make, face):
     """Rotated by 90 degrees about X: the programmed Y is the machine's Z."""
     bench = make(face | {"axis.Z.start_mm": 120.0})
-    result = bench.run("%p\nN10 #CS ON[0,0,0,90,0,0]\nN20 G00 X0 Y120 Z0\nN30 G100 Y90 F600\nN40 #CS OFF\nN50 M30\n")
+    result = bench.run(
+        "%p\nN10 #CS ON[0,0,0,90,0,0]\nN20 G00 X0 Y120 Z0\nN30 G100 Y90 F600\nN40 #CS OFF\nN50 M30\n"
+    )
     by_axis = {one.axis: one for one in result.measurements}
 
     assert result.completed, result.errors
@@ -172,7 +177,10 @@ def test_operated_probe_is_error_50052_and_no_axis_moves(make, face, errors, sig
 
     assert errors(result) == [(50052, "Z", "N10")]
     assert bench.position_mm("Z") == pytest.approx(99.0, abs=1e-3)
-    active = [bench.kernel.image.get(bench.kernel.image.layout.element(f"ax/{n}/lr_state/measurement_active_r").id) for n in range(1, 7)]
+    active = [
+        bench.kernel.image.get(bench.kernel.image.layout.element(f"ax/{n}/lr_state/measurement_active_r").id)
+        for n in range(1, 7)
+    ]
     assert not any(active)
 
 
@@ -184,6 +192,7 @@ def test_no_signal_is_no_error_by_default(make):
     assert result.completed
     assert [one.text for one in result.messages] == ["0"]
     assert not result.measurements
+    bench.advance(200)
     assert bench.position_mm("Z") == pytest.approx(12.0, abs=1e-3)
 
 
@@ -343,19 +352,21 @@ def test_program_switches_the_signal_and_back(make, face):
 
     assert [one.source for one in result.measurements] == ["PLC", "PLC_TIMESTAMP", "DRIVE", "PLC"]
     assert [one.acs_mm for one in result.measurements[1:3]] == [100.0, 100.0]
-    assert all(0.01 <= 100.0 - one.acs_mm <= 0.0202 for one in (result.measurements[0], result.measurements[3]))
+    assert all(
+        0.01 <= 100.0 - one.acs_mm <= 0.0202 for one in (result.measurements[0], result.measurements[3])
+    )
 
 
 @pytest.mark.req("M-024", "M-032", "M-033", "M-056")
-def test_measuring_type_of_the_program_and_back_to_that_of_the_channel(make):
-    bench = make({"axis.Z.start_mm": 20.0, "channel.messtyp": 3})
+def test_measuring_type_of_the_program_and_back_to_that_of_the_channel(make, errors):
+    bench = make({"axis.Z.start_mm": 20.0, "channel.messtyp": 7})
     result = bench.run(
-        '%p\nN10 #MSG ["%d", V.G.MEAS_TYPE]\nN20 #MEAS MODE[7]\nN30 #MSG ["%d", V.G.MEAS_TYPE]\n'
-        'N40 #MEAS MODE\nN50 #MSG ["%d", V.G.MEAS_TYPE]\nN60 G100 Z19 F600\nN70 M30\n'
+        '%p\nN10 #MSG ["%d", V.G.MEAS_TYPE]\nN20 #MEAS MODE[1]\nN30 #MSG ["%d", V.G.MEAS_TYPE]\n'
+        'N35 G100 Z19 F600\nN40 #MEAS MODE\nN50 #MSG ["%d", V.G.MEAS_TYPE]\nN60 G100 Z18 F600\nN70 M30\n'
     )
 
-    assert [one.text for one in result.messages] == ["3", "7", "3"]
-    assert result.completed, "type 7 would have ended with 50886"
+    assert [one.text for one in result.messages] == ["7", "1", "7"]
+    assert errors(result) == [(50886, "Z", "N60")], "N35 ran as type 1, N60 as type 7"
 
 
 @pytest.mark.req("M-024", "M-145")
@@ -399,9 +410,7 @@ def test_timestamp_from_before_the_run_is_error_50053(make, face, probing, error
 def test_run_is_cut_at_the_event_and_the_next_block_starts_there(make, own_signals, recorder):
     """%Meas_run: X and Y of N30 end on the way, N40 goes on from the stopped point."""
     bench = make(BY_PLC, recorder=recorder, plc=[own_signals({1: 70_000, 2: 40_000})])
-    result = bench.run(
-        "%Meas_run\nN10 G00 X0 Y0 Z0\nN20 X5\nN30 G100 X10 Y10 F500\nN40 G01 X7\nN50 M30\n"
-    )
+    result = bench.run("%Meas_run\nN10 G00 X0 Y0 Z0\nN20 X5\nN30 G100 X10 Y10 F500\nN40 G01 X7\nN50 M30\n")
     x, y = recorder.column("command", 0), recorder.column("command", 1)
 
     assert result.completed, result.errors
@@ -423,7 +432,9 @@ def test_type_2_takes_its_feed_from_the_axis_and_wants_a_signal(make, recorder, 
 @pytest.mark.req("M-026", "M-028")
 @pytest.mark.parametrize(("kind", "words", "most"), [(2, "X1 Y1", 1), (4, "X1 Y1 Z19 A1", 3)])
 def test_too_many_axes_for_the_type_is_error_50061(make, kind, words, most):
-    result = make({"axis.Z.start_mm": 20.0}).run(f"%p\nN10 #MEAS MODE[{kind}]\nN20 G100 {words} F60\nN30 M30\n")
+    result = make({"axis.Z.start_mm": 20.0}).run(
+        f"%p\nN10 #MEAS MODE[{kind}]\nN20 G100 {words} F60\nN30 M30\n"
+    )
 
     (error,) = result.errors
     assert error.id == 50061

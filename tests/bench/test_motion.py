@@ -1,0 +1,328 @@
+"""Path motion: junctions, override, feedhold, monitoring, history, software limits."""
+
+import math
+
+import numpy as np
+import pytest
+
+from hli_bench.kernel.position_controller import history
+
+X, Y, Z = 0, 1, 2
+FULL = 1000
+
+OVERRIDE = '''
+from hli_bench.plc import Plc
+
+class Override(Plc):
+    """Override as the test says, from the cycle it says."""
+    steps = {steps}
+
+    def start(self, hli, io):
+        self.n = 0
+        hli.ch[1].head.plc_present_w = True
+        for n in (1, 2, 3):
+            hli.ax[n].head.plc_present_w = True
+        unit = hli.ch[1].bahn_mc_control
+        unit.override.enable_w = True
+        unit.override.command_w = 1000
+        unit.override_valid.enable_w = True
+        unit.override_valid.command_w = True
+        unit.feedhold.enable_w = True
+        for n in (1, 2, 3):
+            hli.ax[n].lr_mc_control.release_feedhold.enable_w = True
+            hli.ax[n].lr_mc_control.release_feedhold.command_w = True
+
+    def cycle(self, hli, io):
+        self.n += 1
+        channel, axes = hli.ch[1].bahn_mc_control, hli.ax
+        for cycle, code in self.steps:
+            if cycle == self.n:
+                exec(code, dict(channel=channel, axes=axes))
+'''
+
+
+@pytest.fixture
+def acts(script):
+    """Return a maker of PLC scripts that do something in given PLC cycles."""
+    return lambda *steps: script(OVERRIDE.replace("{steps}", repr(steps)), "acts")
+
+
+def path_speed(recorder) -> np.ndarray:
+    return np.hypot(recorder.velocity(X), recorder.velocity(Y))
+
+
+def test_path_of_two_axes_is_straight_and_ends_exactly(make, recorder):
+    bench = make(recorder=recorder)
+    result = bench.run("%p\nN10 G01 X30 Y40 F6000\nN20 M30\n")
+    x, y = recorder.column("command", X), recorder.column("command", Y)
+
+    assert result.completed
+    assert (x[-1], y[-1]) == (300_000.0, 400_000.0)
+    assert np.max(np.abs(x * 4.0 - y * 3.0)) < 1e-4
+    assert path_speed(recorder).max() == pytest.approx(100.0, abs=1e-6)
+    bench.advance(300)
+    assert bench.position_mm("X") == pytest.approx(30.0, abs=1e-4)
+    assert bench.position_mm("Y") == pytest.approx(40.0, abs=1e-4)
+
+
+def test_collinear_blocks_run_through(make, recorder):
+    blocks = "".join(f"N{n} G01 X{n} Y{2 * n} F3000\n" for n in range(1, 21))
+    bench = make(recorder=recorder)
+    bench.run(f"%p\n{blocks}N99 M30\n")
+    speed = path_speed(recorder)
+    moving = np.flatnonzero(speed > 1e-6)
+    cruise = speed[moving[0] : moving[-1] + 1]
+
+    assert cruise[60:-60].min() == pytest.approx(50.0, abs=1e-6), "no dip at any of 19 block ends"
+
+
+def test_corner_is_taken_no_faster_than_the_axes_can(make, recorder):
+    bench = make(recorder=recorder)
+    bench.run("%p\nN10 G01 X10 F3000\nN20 Y10\nN30 M30\n")
+    y = recorder.column("command", Y)
+    turn = int(np.flatnonzero(y > y[0])[0])
+    rate = bench.config.axis("X").params.getriebe[0].lslope_profil.a_stufe_1
+
+    assert path_speed(recorder)[turn - 2 : turn + 1].min() <= 1.5 * rate * 1e-3
+    for axis in (X, Y):
+        steps = np.abs(np.diff(recorder.velocity(axis))) / 1e-3
+        assert steps.max() <= 2.0 * rate + 1e-3, "a transition may use one more cycle of acceleration"
+
+
+def test_short_blocks_are_looked_ahead_over(make, recorder):
+    """200 blocks of 0.1 mm: the path reaches its feed, because it may brake over many of them."""
+    blocks = "".join(f"G01 X{n / 10:.1f} F6000\n" for n in range(1, 201))
+    bench = make(recorder=recorder)
+    result = bench.run(f"%p\n{blocks}M30\n")
+
+    assert result.completed
+    # the ring holds 63 blocks, 6.3 mm: enough to brake from sqrt(2 a s)
+    rate = bench.config.axis("X").params.getriebe[0].lslope_profil.a_stufe_1
+    least = min(100.0, 0.6 * math.sqrt(2 * rate * 6.3))
+    assert path_speed(recorder).max() >= least
+    assert recorder.column("command", X)[-1] == 200_000.0
+
+
+@pytest.mark.parametrize(("override", "factor"), [(500, 0.5), (1000, 1.0), (100, 0.1)])
+def test_channel_override_scales_the_feed(make, recorder, acts, override, factor):
+    bench = make(recorder=recorder, plc=[acts((1, f"channel.override.command_w = {override}"))])
+    bench.advance(5)
+    bench.run("%p\nN10 G01 X20 F3000\nN20 M30\n")
+
+    assert path_speed(recorder).max() == pytest.approx(50.0 * factor, abs=1e-6)
+
+
+def test_override_counts_only_while_it_is_valid_and_acts_on_the_run(make, recorder, acts):
+    steps = ((150, "channel.override.command_w = 200"), (400, "channel.override_valid.command_w = False"))
+    bench = make(recorder=recorder, plc=[acts(*steps)])
+    bench.run("%p\nN10 G01 X40 F3000\nN20 M30\n")
+    speed = path_speed(recorder)
+    start = recorder.writes[0].cycle
+
+    assert speed[start + 140] == pytest.approx(50.0, abs=1e-6)
+    assert speed[start + 300] == pytest.approx(10.0, abs=1e-6)
+    assert speed[start + 500] == pytest.approx(50.0, abs=1e-6)
+
+
+@pytest.mark.req("M-190", "M-191")
+@pytest.mark.parametrize(("current", "rate"), [(0, 1000.0), (1, 2500.0)])
+def test_feedhold_of_the_channel_brakes_with_the_ramp_of_p_chan_00097(make, recorder, acts, current, rate):
+    settings = {"channel.use_drive_curr_limit": current}
+    for axis in "XY":
+        slope = f"axis.{axis}.getriebe[0].lslope_profil"
+        settings |= {f"{slope}.a_feedh": 2500, f"{slope}.a_stufe_1": 1000, f"{slope}.a_stufe_2": 1000}
+    bench = make(
+        settings,
+        recorder=recorder,
+        plc=[acts((200, "channel.feedhold.command_w = True"), (500, "channel.feedhold.command_w = False"))],
+    )
+    result = bench.run("%p\nN10 G01 X40 F3000\nN20 M30\n")
+    speed = path_speed(recorder)
+    start = recorder.writes[0].cycle
+    change = np.diff(speed) / 1e-3
+    held = change[start + 190 : start + 400]
+
+    assert result.completed
+    assert held.min() == pytest.approx(-rate, abs=1.0)
+    assert speed[start + 300 : start + 490].max() == 0.0
+    assert recorder.column("command", X)[-1] == 400_000.0
+
+
+def test_missing_feed_release_of_a_moving_axis_stops_the_path(make, recorder, acts):
+    off = "axes[1].lr_mc_control.release_feedhold.command_w = False"
+    on = "axes[1].lr_mc_control.release_feedhold.command_w = True"
+    bench = make(recorder=recorder, plc=[acts((200, off), (500, on))])
+    bench.run("%p\nN10 G01 X40 Y40 F3000\nN20 M30\n")
+    start = recorder.writes[0].cycle
+    speed = path_speed(recorder)
+
+    assert speed[start + 300 : start + 490].max() == 0.0
+    assert recorder.column("command", Y)[-1] == 400_000.0
+
+
+def test_missing_feed_release_of_a_standing_axis_does_not_stop_the_others(make, recorder, acts):
+    off = "axes[2].lr_mc_control.release_feedhold.command_w = False"
+    bench = make(recorder=recorder, plc=[acts((100, off))])
+    result = bench.run("%p\nN10 G01 X40 F3000\nN20 M30\n")
+
+    assert result.completed
+    assert path_speed(recorder)[recorder.writes[0].cycle + 300] == pytest.approx(50.0, abs=1e-6)
+
+
+WEAK = "#DRIVE WR SYN [AX=X KEY=TORQUE_LIMIT VAL=1 WAIT]\n#DRIVE WR SYN [AX=X KEY=MON_WINDOW VAL=4294967295 WAIT]\n"
+
+
+def test_lag_above_the_limit_ends_the_program_and_the_axis_stands(make, recorder, errors):
+    """1 % torque cannot follow: 70020, the path brakes, nothing moves any more."""
+    bench = make({"axis.X.getriebe[0].slep_max": 30_000}, recorder=recorder)
+    result = bench.run(f"%p\n{WEAK}N10 G01 X200 F6000\nN20 G01 X0\nN30 M30\n")
+    lag = recorder.column("lag", X)
+    over = int(np.flatnonzero(np.abs(lag) > 30_000)[0])
+    change = np.diff(path_speed(recorder)) / 1e-3
+
+    assert errors(result) == [(70020, "X", "N10")]
+    assert result.status == "error"
+    assert recorder.column("command", X)[-1] < 2_000_000
+    assert change.min() > -2001.0, "braked, not cut off"
+    assert recorder.records[-1][0] - 1 - over <= 10 + 1, "P-AXIS-00488: 10 ms"
+    before = recorder.column("command", X)[-1]
+    bench.advance(500)
+    assert recorder.column("command", X)[-1] == before
+
+
+def test_reset_after_a_lag_error_takes_up_the_actual_position(make, recorder):
+    bench = make({"axis.X.getriebe[0].slep_max": 30_000}, recorder=recorder)
+    bench.run(f"%p\n{WEAK}N10 G01 X200 F6000\nN30 M30\n")
+    bench.reset()
+    again = bench.run(
+        "%p\nN10 #DRIVE WR SYN [AX=X KEY=TORQUE_LIMIT VAL=300 WAIT]\nN20 G01 X5 F600\nN30 M30\n"
+    )
+    bench.advance(300)
+
+    assert again.completed, again.errors
+    assert bench.position_mm("X") == pytest.approx(5.0, abs=1e-3)
+    assert np.abs(np.diff(recorder.column("actual", X))).max() < 1100.0, "no jump on the way back"
+    weak = bench.run(f"%p\n{WEAK}N10 G01 X200 F6000\nN30 M30\n")
+    assert [one.id for one in weak.errors] == [70020], "the monitoring is on again"
+
+
+def test_lag_monitoring_can_be_suppressed(make):
+    settings = {"axis.X.getriebe[0].slep_max": 30_000, "axis.X.lr_param.suppress_pos_lag_error": 1}
+    result = make(settings).run(f"%p\n{WEAK}N10 G01 X20 F6000\nN30 M30\n")
+
+    assert result.completed
+    assert not result.errors
+
+
+def test_drive_fault_comes_as_emcy_and_a_reset_brings_the_drive_back(make, recorder, errors):
+    """Following error window 0.1 mm in the drive: EMCY 8611, error 70222, reset, then it moves again."""
+    bench = make({"axis.X.lr_param.suppress_pos_lag_error": 1}, recorder=recorder)
+    window = round(0.1 / 10 * 1_048_576)
+    faulty = (
+        "%p\n#DRIVE WR SYN [AX=X KEY=TORQUE_LIMIT VAL=1 WAIT]\n"
+        f"#DRIVE WR SYN [AX=X KEY=MON_WINDOW VAL={window} WAIT]\nN10 G01 X20 Y20 F6000\nN20 M30\n"
+    )
+    result = bench.run(faulty)
+    emergencies = [frame for _, frame in recorder.bus if frame.cob_id == 0x81]
+
+    assert errors(result) == [(70222, "X", "N10")]
+    assert "0x8611" in result.errors[0].text
+    assert emergencies[0].data[:2] == bytes((0x11, 0x86))
+    bench.advance(50)
+    assert recorder.column("statusword", X)[-1] & 0x4F == 0x08
+    y = recorder.velocity(Y)
+    assert (np.diff(y) / 1e-3).min() > -2001.0, "the other axis brakes"
+    bench.reset()
+    again = bench.run(
+        "%p\n#DRIVE WR SYN [AX=X KEY=TORQUE_LIMIT VAL=300 WAIT]\n"
+        "#DRIVE WR SYN [AX=X KEY=MON_WINDOW VAL=4294967295 WAIT]\nN10 G01 X7 F600\nN20 M30\n"
+    )
+    bench.advance(300)
+    assert again.completed, again.errors
+    assert recorder.column("statusword", X)[-1] & 0x6F == 0x27
+    assert bench.position_mm("X") == pytest.approx(7.0, abs=1e-3)
+
+
+def test_axis_whose_drive_is_out_of_operation_may_not_move(make, errors):
+    bench = make({"axis.X.lr_param.suppress_pos_lag_error": 1})
+    window = round(0.1 / 10 * 1_048_576)
+    bench.run(
+        "%p\n#DRIVE WR SYN [AX=X KEY=TORQUE_LIMIT VAL=1 WAIT]\n"
+        f"#DRIVE WR SYN [AX=X KEY=MON_WINDOW VAL={window} WAIT]\nN10 G01 X20 F6000\nN20 M30\n"
+    )
+    others = bench.run("%p\nN10 G01 Y5 F600\nN20 M30\n")
+    again = bench.run("%p\nN10 G01 X5 F600\nN20 M30\n")
+
+    assert others.completed
+    assert errors(again) == [(70101, "X", "N10")]
+
+
+def test_reset_in_full_motion_brakes_and_the_next_program_begins_at_rest(make, recorder):
+    bench = make(recorder=recorder)
+    bench.start_up()
+    bench.kernel.start(["%p", "N10 G01 X100 Y50 F6000", "N20 M30"], "p")
+    bench.engine.wake()
+    bench.advance(400)
+    bench.reset()
+    result = bench.run("%p\nN10 G01 X0 Y0 F6000\nN20 M30\n")
+
+    assert result.completed
+    assert np.abs(np.diff(recorder.velocity(X)) / 1e-3).max() < 2001.0
+    assert recorder.column("command", X)[-1] == recorder.column("command", Y)[-1] == 0.0
+
+
+@pytest.mark.req("M-181")
+def test_history_holds_the_positions_of_their_instants(make, recorder):
+    """Every sample of the history is the position in the telegram of its SYNC; between them a cubic."""
+    bench = make(recorder=recorder)
+    bench.run("%p\nN10 G01 X10 Y-5 F6000\nN20 M30\n")
+    core = bench.kernel.core
+    actual, last = recorder.column("actual", X), bench.engine.cycle
+
+    for cycle in range(last - 150, last - 3, 7):
+        at = bench.kernel.setup.dc_epoch_ns + cycle * 1_000_000
+        assert history.position(core, X, at) == pytest.approx(actual[cycle - 1], abs=1e-6)
+        between = history.position(core, X, at + 500_000)
+        assert min(actual[cycle - 1], actual[cycle]) - 0.2 <= between
+        assert between <= max(actual[cycle - 1], actual[cycle]) + 0.2
+    assert history.position(core, X, bench.kernel.setup.dc_epoch_ns + (last + 1) * 1_000_000) is None
+
+
+@pytest.mark.req("H-005", "H-027")
+@pytest.mark.parametrize(("start", "target", "number"), [(70, 90, 50041), (-510, -530, 50042)])
+def test_software_limits_act_on_a_homed_axis_only(make, errors, start, target, number):
+    limits = {"axis.X.kenngr.swe_pos": 800_000, "axis.X.kenngr.swe_neg": -5_200_000, "axis.X.start_mm": start}
+    program = f"%p\nN10 G01 X{target} F6000\nN20 M30\n"
+    absolute = make(limits).run(program)
+    incremental = make(limits | {"axis.X.kenngr.abs_pos_gueltig": 0}).run(program)
+
+    assert errors(absolute) == [(number, "X", "N10")]
+    assert incremental.completed
+
+
+@pytest.mark.req("H-005")
+def test_software_limits_act_on_a_measuring_run_too(make, errors):
+    result = make({"axis.Z.start_mm": 0.0, "axis.Z.kenngr.swe_pos": 500_000}).run(
+        "%p\nN10 G100 Z60 F6000\nN20 M30\n"
+    )
+
+    assert errors(result) == [(50041, "Z", "N10")]
+
+
+def test_motion_before_homing_can_be_forbidden(make, errors):
+    settings = {"axis.X.kenngr.abs_pos_gueltig": 0, "axis.X.kenngr.prog_move_requires_homing": 1}
+
+    assert errors(make(settings).run("%p\nN10 G01 X1 F600\nN20 M30\n")) == [(51082, "X", "N10")]
+
+
+@pytest.mark.req("M-106")
+def test_synchronous_text_comes_when_its_place_is_reached(make, recorder):
+    """SYN waits for the interpolator, without it the text comes at decoding."""
+    bench = make(recorder=recorder)
+    bench.run('%p\nN10 G01 X10 F600\nN20 #MSG SYN["syn"]\nN30 #MSG["now"]\nN40 G01 X20\nN50 M30\n')
+    at = {record.text: cycle for cycle, record in recorder.records}
+    x = recorder.column("command", X)
+
+    assert at["now"] < at["syn"]
+    assert abs(x[at["syn"] - 2] - 100_000) <= 120
+    assert x[at["now"] - 1] < 1_000

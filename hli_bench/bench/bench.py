@@ -56,17 +56,19 @@ class Bench:
         on_record: OnRecord | None = None,
     ) -> None:
         self.config: MachineConfig = load(machine, settings or {})
-        self._closing = ExitStack()
-        self.kernel = build.kernel(self.config)
-        self.engine = self._engine(machine, settings or {}, can, processes=processes)
-        self.engine.observers += observers
-        self._tap = _Tap(on_record)
-        self.engine.listeners.append(self._tap)
-        self._endpoint = zenoh
-        self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
-        self._pace = RealPace(self.config.cycle_ns) if pace == "real" else None
-        self._plcs = plc_configs(self.config, plc)
-        self._up = False
+        with ExitStack() as self._closing:
+            self.kernel = build.kernel(self.config)
+            self.engine = self._engine(machine, settings or {}, can, processes=processes)
+            self.engine.observers += observers
+            self._tap = _Tap(on_record)
+            self.engine.listeners.append(self._tap)
+            self._endpoint = zenoh
+            self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
+            self._pace = RealPace(self.config.cycle_ns) if pace == "real" else None
+            self._plcs = plc_configs(self.config, plc)
+            self._up = False
+            # Built: from here on `close` ends what the stack holds.
+            self._closing = self._closing.pop_all()
 
     def __enter__(self) -> Self:
         return self
@@ -89,6 +91,8 @@ class Bench:
         if not self._advance(lambda: self.kernel.ready, START_UP_CYCLES):
             raise BenchError(f"not all drives came into operation within {START_UP_CYCLES} cycles")
         self._attach_plcs()
+        if self._pace is not None:
+            self._pace.restart()
 
     def run(self, program: str | Path | Iterable[str], name: str = "") -> Result:
         """Run an NC program to its end and return the result.
@@ -204,7 +208,7 @@ class Bench:
             script = load_script(plc.script)
             period_us = plc.period_us or script.period_us
             task = Task(plc.name, script, period_us, self.kernel.image.layout, self.terminal_layouts)
-            self.engine.plcs.append(LocalPlc(task, self.config.cycle_ns))
+            self.engine.attach(LocalPlc(task, self.config.cycle_ns))
 
     def _start_plc_process(self, plc: PlcConfig) -> None:
         """Start a script as a process of its own and wait until it has attached."""

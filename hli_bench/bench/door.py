@@ -22,6 +22,8 @@ from hli_bench.shells.zenoh_requests import (
 )
 from hli_bench.shells.zenoh_server import HliServer
 
+RESET_CYCLES: Final = 2000
+"""Cycles within which the drives must be back after a reset, else it is answered all the same."""
 ANSWER_S: Final = 10.0
 """Wall time in which an attached PLC must answer in lock-step; a dead one is noticed within the lease (0.5 s)."""
 
@@ -38,6 +40,8 @@ class HliDoor:
         self._state = state
         self._published = -1
         self._written: list[tuple[int, WriteRequest]] = []
+        self._resets: list[tuple[int, Reset]] = []
+        self._settle_until = 0
         self.programs: list[RunProgram] = []
         """Programs that clients want to run; the bench takes them when it is idle."""
 
@@ -48,8 +52,8 @@ class HliDoor:
 
     @property
     def waiting(self) -> bool:
-        """A client's write has not taken effect yet."""
-        return bool(self._written)
+        """What a client did, or its departure, has not taken effect yet."""
+        return bool(self._written or self._resets) or self._engine.cycle < self._settle_until
 
     def after_step(self) -> None:
         """Publish the cycle, do what was asked, let go of PLCs that have departed."""
@@ -105,7 +109,7 @@ class HliDoor:
             case Reset():
                 self._engine.kernel.reset()
                 self._engine.wake()
-                request.reply()
+                self._resets.append((self._engine.cycle, request))
             case State():
                 request.reply(json.dumps(self._state()))
             case FaultOrder():
@@ -122,9 +126,14 @@ class HliDoor:
         self._written.append((self._engine.cycle + 1, request))
 
     def _acknowledge(self) -> None:
-        """Answer the writes that the kernel has seen by now."""
-        while self._written and self._written[0][0] <= self._engine.cycle:
+        """Answer the writes that the kernel has seen by now, and the resets after which all drives are back."""
+        cycle = self._engine.cycle
+        while self._written and self._written[0][0] <= cycle:
             self._written.pop(0)[1].reply()
+        ready = self._engine.kernel.ready
+        while self._resets and cycle > self._resets[0][0] + (0 if ready else RESET_CYCLES):
+            self._resets.pop(0)[1].reply()
+            self.state_changed()
 
     def _attach(self, request: Attach) -> None:
         engine = self._engine
@@ -137,12 +146,13 @@ class HliDoor:
         port = AttachedPlc(
             request.plc, cycles, self._server, self.publish, lockstep=self._lockstep, timeout_s=ANSWER_S
         )
-        engine.plcs.append(port)
+        engine.attach(port)
         request.accept(cycle=engine.cycle, cycle_us=cycle_ns // 1000, lockstep=self._lockstep)
 
     def _let_go(self) -> None:
         for plc in self._server.departed():
             self._engine.lose(plc)
+            self._settle_until = self._engine.cycle + 1
         while self._engine.lost:
             self._server.detach(self._engine.lost.pop())
 

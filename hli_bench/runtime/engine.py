@@ -5,7 +5,7 @@ Every other cycle hands real frames to the drives and takes real frames from the
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Protocol
+from typing import Final, Protocol
 
 from hli_bench.base.time import Ns
 from hli_bench.kernel.cycle import Kernel
@@ -102,6 +102,9 @@ class LocalLink:
         return {image.terminal: image.data for image in self._side.images(cycle)}
 
 
+NO_TICK: Final = 1 << 62
+
+
 class Engine:
     """Owns the cycle count. `cycle` is the last completed cycle."""
 
@@ -117,6 +120,9 @@ class Engine:
         self._orders: list[CanFrame] = []
         self._decide = True
         self._cycle_ns = kernel.setup.cycle_ns
+        self._tick = NO_TICK
+        self._loud = 0
+        """First cycle of which it is not known that only telegrams pass."""
         self._words: bytes = b""
         self._new_words = True
         machine, rows = link.rows, kernel.rows
@@ -183,8 +189,6 @@ class Engine:
 
     def apply(self, commands: Commands) -> None:
         """Let a PLC's writes count from the next cycle on."""
-        if not commands.writes:
-            return
         refusals = self.access.apply(commands)
         for observer in self.observers:
             observer.commands(commands)
@@ -193,20 +197,31 @@ class Engine:
                 listener.refused(self.cycle, refusals)
         self._decide = True
 
+    def attach(self, plc: PlcPort) -> None:
+        """Let a PLC take part from the next cycle on that its period divides."""
+        self.plcs.append(plc)
+        self._tick = self._next_tick()
+
     def _stretch(self, first: int, limit: int) -> int:
         """Return how many cycles from `first` on may be strided over, 0 when frames have to pass."""
         if self._orders or self._new_words:
             return 0
-        room = self.link.quiet(first)
-        if room <= 0:
-            return 0
-        return min(room, limit - self.cycle, self._next_tick(), LOG_CYCLES, self.link.image_horizon(first))
+        if first >= self._loud:
+            self._loud = first + self.link.quiet(first)
+            if first >= self._loud:
+                return 0
+        last = self._tick if self._tick < limit else limit
+        if last >= self._loud:
+            last = self._loud - 1
+        if last == first:
+            return 1
+        return min(last - self.cycle, LOG_CYCLES, self.link.image_horizon(first))
 
     def _next_tick(self) -> int:
-        """Return in how many cycles the next PLC task is due."""
-        if not self.plcs:
-            return LOG_CYCLES
-        return min([plc.period_cycles - self.cycle % plc.period_cycles for plc in self.plcs])
+        """Return the next cycle in which a PLC task is due."""
+        return min(
+            ((self.cycle // plc.period_cycles + 1) * plc.period_cycles for plc in self.plcs), default=NO_TICK
+        )
 
     def _word_bytes(self) -> bytes:
         """Control and latch control words as sent: a cycle in which they change is not quiet."""
@@ -216,7 +231,7 @@ class Engine:
 
     def _telegrams(self, cycle: int) -> None:
         """Pass real frames at the SYNC of a cycle."""
-        self._words, self._new_words = self._word_bytes(), False
+        self._words, self._new_words, self._loud = self._word_bytes(), False, 0
         orders, self._orders = self._orders, []
         self.kernel.begin_cycle(cycle)
         frames = self.link.telegrams(cycle, [*self.kernel.cyclic_frames(), *orders])
@@ -262,19 +277,22 @@ class Engine:
             observer.cycles(first, count)
             if edges:
                 observer.edges(edges)
-        due = [plc for plc in self.plcs if self.cycle % plc.period_cycles == 0]
-        if due:
-            self._run_plcs(due)
+        if self.cycle >= self._tick:
+            self._run_plcs()
 
-    def _run_plcs(self, due: Sequence[PlcPort]) -> None:
+    def _run_plcs(self) -> None:
         """Run the tasks that are due: all of them see the same images."""
+        cycle = self.cycle
+        due = [plc for plc in self.plcs if cycle % plc.period_cycles == 0]
+        self._tick = cycle + due[0].period_cycles if len(self.plcs) == 1 else self._next_tick()
         self.kernel.publish()
-        io = self.link.images(self.cycle)
-        answers = [(plc, plc.tick(self.cycle, self.dc_ns, self.kernel.image.data, io)) for plc in due]
-        for plc, commands in answers:
+        io = self.link.images(cycle)
+        dc_ns = self.dc_ns
+        image = self.kernel.image.data
+        for plc, commands in [(plc, plc.tick(cycle, dc_ns, image, io)) for plc in due]:
             if commands is None:
                 self.lose(plc.name)
-            else:
+            elif commands.writes:
                 self.apply(commands)
 
     def lose(self, name: str) -> None:
@@ -282,6 +300,7 @@ class Engine:
         if not any(plc.name == name for plc in self.plcs):
             return
         self.plcs = [plc for plc in self.plcs if plc.name != name]
+        self._tick = self._next_tick()
         self.lost.append(name)
         self.access.leave(name)
         self.kernel.plc_lost(name)

@@ -40,23 +40,23 @@ def add(commands: Commands) -> None:
 
 def show_model(arguments: argparse.Namespace) -> int:
     """Print the object dictionary. Raises InputError for an unknown model."""
-    path = eds_of(arguments.model)
+    model = arguments.model
+    try:
+        path = eds_of(model if "." in model else f"{MODELS}.{model}")
+    except InputError as error:
+        raise InputError(f"{error}; supplied models: {', '.join(supplied_models())}") from error
     for line in tables.lines([HEADS, *map(row, load(path))]):
         print(line)
     return 0
 
 
-def eds_of(model: str) -> Path:
-    """Return the EDS of a model by name or module path. Raises InputError."""
-    name = model if "." in model else f"{MODELS}.{model}"
-    try:
-        loaded: Any = module(name)
-    except InputError as error:
-        raise InputError(f"{error.message}; supplied models: {', '.join(supplied_models())}") from error
+def eds_of(name: str) -> Path:
+    """Return the EDS of a drive model by its module path. Raises InputError."""
+    loaded: Any = module(name)
     described = getattr(loaded, "MODEL", None)
-    if described is None or not hasattr(loaded, "create"):
+    if not hasattr(described, "eds") or not hasattr(loaded, "create"):
         raise InputError(f"{name} is no drive model: expected MODEL, with the name of its EDS, and create()")
-    return data_file("eds", described.eds)
+    return data_file("eds", loaded.MODEL.eds)
 
 
 def supplied_models() -> list[str]:

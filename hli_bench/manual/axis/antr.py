@@ -330,7 +330,6 @@ class Antr:
             not_emulated=(
                 ReferenceCamSignal.RT_STATUS_BIT_1,
                 ReferenceCamSignal.RT_STATUS_BIT_2,
-                ReferenceCamSignal.STATUS_DIG_INPUTS,
             ),
             drive_types=(DriveType.SERCOS, DriveType.LIGHTBUS, DriveType.CANOPEN),
             doc="Where the reference cam signal comes from.",

@@ -56,7 +56,8 @@ class Bench:
         on_record: OnRecord | None = None,
     ) -> None:
         self.config: MachineConfig = load(machine, settings or {})
-        with ExitStack() as self._closing:
+        with ExitStack() as stack:
+            self._closing = stack
             self.kernel = build.kernel(self.config)
             self.engine = self._engine(machine, settings or {}, can, processes=processes)
             self.engine.observers += observers
@@ -68,7 +69,7 @@ class Bench:
             self._plcs = plc_configs(self.config, plc)
             self._up = False
             # Built: from here on `close` ends what the stack holds.
-            self._closing = self._closing.pop_all()
+            self._closing = stack.pop_all()
 
     def __enter__(self) -> Self:
         return self

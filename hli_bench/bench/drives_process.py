@@ -8,12 +8,13 @@ import json
 import sys
 from collections.abc import Sequence
 
+from hli_bench.base.errors import EnvironmentLacks
 from hli_bench.bench import build, telegraph
 from hli_bench.bench.config import load
 from hli_bench.bench.telegraph import Order
 from hli_bench.runtime.machine_side import SYNC, MachineSide
 from hli_bench.shells.can_bus import CanBus
-from hli_bench.shells.processes import Pipe, worker_pipe
+from hli_bench.shells.processes import Pipe, work
 from hli_bench.wire.can import CanFrame
 
 
@@ -41,14 +42,14 @@ class Drives:
             self._answer(self._side.telegrams(cycle, inbox))
 
     def _from_bus(self) -> list[CanFrame]:
-        """Take frames until the SYNC that belongs to this cycle."""
+        """Take frames until the SYNC that belongs to this cycle. Raises EnvironmentLacks when it does not come."""
         assert self._bus is not None
         inbox: list[CanFrame] = []
         while (frame := self._bus.receive()) is not None:
             if frame.cob_id == SYNC.cob_id:
                 return inbox
             inbox.append(frame)
-        return inbox
+        raise EnvironmentLacks("the SYNC of the CNC was lost on the CAN bus")
 
     def _answer(self, frames: Sequence[CanFrame]) -> None:
         """Send the frames (a CAN bus carries them itself) and the edges of this cycle."""
@@ -59,10 +60,9 @@ class Drives:
         self._pipe.send(telegraph.parts(telegraph.frames(frames), edges))
 
 
-def main(arguments: Sequence[str]) -> None:
+def main(pipe: Pipe, arguments: Sequence[str]) -> None:
     """Build the machine side and serve."""
-    descriptor, machine, settings, can = arguments
-    pipe = worker_pipe(descriptor)
+    machine, settings, can = arguments
     side = build.machine_side(load(machine, json.loads(settings)))
     bus = CanBus(can) if can else None
     try:
@@ -73,4 +73,4 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(work(main, sys.argv[1:]))

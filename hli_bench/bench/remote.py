@@ -8,7 +8,7 @@ from typing import Final, Self
 
 import numpy as np
 
-from hli_bench.base.errors import BenchError, InputError, NotEmulated
+from hli_bench.base.errors import EnvironmentLacks, InputError, NotEmulated
 from hli_bench.bench import telegraph
 from hli_bench.bench.config import MachineConfig
 from hli_bench.bench.telegraph import Order
@@ -83,6 +83,8 @@ class RemoteMachine:
         if self._bus is None:
             body = telegraph.frames(inbox)
         else:
+            # What stands there before the drives were asked came from others, who must not fill the queue.
+            self._bus.clear()
             for frame in (*inbox, SYNC):
                 self._bus.send(frame)
         frames = self._answer(self._drives.ask(telegraph.order(Order.CYCLE, cycle, body)))
@@ -123,7 +125,7 @@ class RemoteMachine:
             frame = self._bus.receive()
             if frame is None:
                 missing = ", ".join(f"{one.cob_id:03X}" for one in open_frames.elements())
-                raise BenchError(f"frames were lost on the CAN bus: {missing}")
+                raise EnvironmentLacks(f"frames were lost on the CAN bus: {missing}")
             if open_frames[frame]:
                 open_frames[frame] -= 1
                 found.append(frame)

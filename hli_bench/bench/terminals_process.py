@@ -13,13 +13,12 @@ from hli_bench.bench.config import load
 from hli_bench.laws.channels import advance_channels
 from hli_bench.laws.rows import MachineRows
 from hli_bench.plant import build as plant
-from hli_bench.shells.processes import worker_pipe
+from hli_bench.shells.processes import Pipe, work
 
 
-def main(arguments: Sequence[str]) -> None:
+def main(pipe: Pipe, arguments: Sequence[str]) -> None:
     """Build the terminals and serve until the pipe closes."""
-    descriptor, machine, settings = arguments
-    pipe = worker_pipe(descriptor)
+    machine, settings = arguments
     config = load(machine, json.loads(settings))
     built = plant.build(config.plant, config.channels())
     rows: MachineRows = built.rows
@@ -41,4 +40,4 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(work(main, sys.argv[1:]))

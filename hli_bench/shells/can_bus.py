@@ -49,6 +49,11 @@ class CanBus:
                 return CanFrame(message.arbitration_id, bytes(message.data), message.is_remote_frame)
         return None
 
+    def clear(self) -> None:
+        """Forget the frames that wait."""
+        while self._bus.recv(0) is not None:
+            pass
+
     def close(self) -> None:
         """Leave the bus."""
         self._bus.shutdown()

@@ -38,6 +38,10 @@ class RealPace:
 
     def __init__(self, cycle_ns: int) -> None:
         self._cycle_ns = cycle_ns
+        self.restart()
+
+    def restart(self) -> None:
+        """Keep time from now on: what came before, such as compiling the laws, is nobody's lateness."""
         self._due_ns = time.perf_counter_ns()
         self.lateness = Lateness()
 

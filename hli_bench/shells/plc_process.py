@@ -118,9 +118,13 @@ def attach(script: Path, endpoint: str, machine: str = "", name: str = "") -> No
 
 
 def start(script: Path, endpoint: str, name: str = "") -> "subprocess.Popen[bytes]":
-    """Start `attach` as a process; errors go to its standard error, exit status as of the command line."""
+    """Start `attach` as a process; errors go to its standard error, exit status as of the command line.
+
+    It has a process group of its own: Ctrl-C is for the process that starts it and ends it.
+    """
     arguments = [str(script), endpoint, *([name] if name else [])]
-    return subprocess.Popen([sys.executable, "-m", "hli_bench.shells.plc_process", *arguments])
+    command = [sys.executable, "-m", "hli_bench.shells.plc_process", *arguments]
+    return subprocess.Popen(command, process_group=0)
 
 
 def main(arguments: Sequence[str]) -> int:

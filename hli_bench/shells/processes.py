@@ -2,16 +2,15 @@
 
 import contextlib
 import os
-import signal
 import socket
 import struct
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final, Self
 
-from hli_bench.base.errors import BenchError
+from hli_bench.base.errors import BenchError, EnvironmentLacks
 from hli_bench.shells import plc_process
 
 _LENGTH: Final = struct.Struct("<I")
@@ -65,11 +64,11 @@ class Pipe:
         self._file = end.makefile("rb")
 
     def send(self, message: bytes) -> None:
-        """Send one message. Raises BenchError when the other side has gone."""
+        """Send one message. Raises EnvironmentLacks when the other side has gone."""
         try:
             self._end.sendall(_LENGTH.pack(len(message)) + message)
         except OSError as error:
-            raise BenchError("a process of the bench has gone") from error
+            raise EnvironmentLacks("a process of the bench has gone") from error
 
     def receive(self) -> bytes:
         """Wait for one message. Raises EOFError when the other side has gone."""
@@ -88,27 +87,33 @@ class Pipe:
 
 
 class Worker:
-    """A Python module running as a process of its own, with a pipe to it. It ends with its pipe."""
+    """A Python module running as a process of its own, with a pipe to it. It ends with its pipe.
+
+    It has a process group of its own: Ctrl-C is for the process that started it.
+    """
 
     def __init__(self, module: str, arguments: Sequence[str]) -> None:
         ours, theirs = socket.socketpair()
         command = [sys.executable, "-m", module, str(theirs.fileno()), *arguments]
-        self._process = subprocess.Popen(command, pass_fds=[theirs.fileno()], stdin=subprocess.DEVNULL)
+        self._process = subprocess.Popen(
+            command, pass_fds=[theirs.fileno()], stdin=subprocess.DEVNULL, process_group=0
+        )
         theirs.close()
         self.pipe = Pipe(ours)
         self._name = module
 
     def ask(self, message: bytes) -> bytes:
-        """Send a message and wait for the answer. Raises BenchError when the process has died."""
-        self.pipe.send(message)
-        return self.answer()
+        """Send a message and wait for the answer. Raises BenchError when the process has ended.
 
-    def answer(self) -> bytes:
-        """Wait for an answer. Raises BenchError when the process has died."""
+        What it ended of stands on standard error; when that was bad input the error says so by its exit status.
+        """
         try:
+            self.pipe.send(message)
             return self.pipe.receive()
-        except EOFError as error:
-            raise BenchError(f"process {self._name} has ended with status {self._process.wait()}") from error
+        except (EOFError, EnvironmentLacks) as error:
+            status = self._process.wait()
+            kind = BenchError if status == BenchError.exit_status else EnvironmentLacks
+            raise kind(f"process {self._name} has ended with status {status}") from error
 
     def close(self) -> None:
         """End the process."""
@@ -118,9 +123,13 @@ class Worker:
         _end(self._process)
 
 
-def worker_pipe(argument: str) -> Pipe:
-    """Return the pipe that this process was started with; Ctrl-C is left to the process at the other end."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    descriptor = int(argument)
+def work(main: Callable[[Pipe, Sequence[str]], None], arguments: Sequence[str]) -> int:
+    """Run the main function of a worker with its pipe and the rest of its arguments; return the exit status."""
+    descriptor = int(arguments[0])
     os.set_inheritable(descriptor, False)
-    return Pipe(socket.socket(fileno=descriptor))
+    try:
+        main(Pipe(socket.socket(fileno=descriptor)), arguments[1:])
+    except BenchError as error:
+        sys.stderr.write(f"{error}\n")
+        return error.exit_status
+    return 0

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
+from hli_bench.base.errors import NotEmulated
 from hli_bench.kernel.records import Homed
 from hli_bench.laws.rows import JOG
 
@@ -386,3 +387,28 @@ def test_aborted_homing_brakes_and_leaves_no_reference(make):
     assert not bench.kernel.core.referenced[X]
     assert bench.kernel.core.at_rest
     assert home(bench).completed
+
+
+@pytest.mark.req("H-009", "H-020")
+def test_rotary_axis_homes_as_a_linear_one(make):
+    """36 degrees a turn, zero pulse half a turn behind the cam's edge."""
+    settings = {
+        "axis.A.start_mm": 0.0,
+        "axis.A.kenngr.abs_pos_gueltig": 0,
+        "plant.cam.A.from_mm": -90.0,
+        "plant.cam.A.to_mm": -45.0,
+        "plant.axis.A.zero_pulse_offset_mm": 9.0,
+        "axis.A.getriebe[0].pos_refpkt": -630_000,
+    }
+    bench = make(settings)
+    result = home(bench, "A1")
+    bench.advance(SETTLE)
+    truth = float(bench.engine.link.rows.servo[4]["angle"]) / (2 * np.pi) * 36.0
+
+    assert result.completed, result.errors
+    assert bench.position_mm("A") == pytest.approx(truth, abs=1e-4)
+
+
+def test_spindle_homing_is_not_built(make):
+    with pytest.raises(NotEmulated, match="spindle S"):
+        home(make(), "S1")

@@ -73,7 +73,7 @@ def compare(result, expected, tolerance: float) -> None:
         pytest.param("meas4", marks=pytest.mark.req(*(f"M-{n:03d}" for n in range(98, 106)))),
     ],
 )
-@pytest.mark.req("M-001", "M-005", "M-007", "M-106", "M-181", "M-182", "M-183")
+@pytest.mark.req("M-001", "M-005", "M-007", "M-057", "M-106", "M-181", "M-182", "M-183")
 def test_example_prints_the_numbers_of_the_manual(make, name, source):
     program = PROGRAMS / f"{name}.nc"
     settings = {"plant.probe.Z.face_mm": FACE_MM[name], "plant.probe.Z.material": "below"}

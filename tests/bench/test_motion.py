@@ -326,3 +326,15 @@ def test_synchronous_text_comes_when_its_place_is_reached(make, recorder):
     assert at["now"] < at["syn"]
     assert abs(x[at["syn"] - 2] - 100_000) <= 120
     assert x[at["now"] - 1] < 1_000
+
+
+def test_axis_passes_the_wrap_of_its_32_bit_position(make, recorder):
+    """20 480 mm are 2^31 increments: 6064 and 607A wrap, the CNC does not."""
+    bench = make({"axis.X.start_mm": 20_475.0, "axis.X.kenngr.swe_pos": 300_000_000}, recorder=recorder)
+    result = bench.run("%p\nN10 G91 G01 X10 F6000\nN20 M30\n")
+    bench.advance(200)
+
+    assert result.completed, result.errors
+    assert bench.position_mm("X") == pytest.approx(20_485.0, abs=1e-3)
+    assert recorder.column("position", X)[-1] < 0
+    assert np.abs(recorder.column("lag", X)[20:]).max() < 5_000

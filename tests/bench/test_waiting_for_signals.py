@@ -456,7 +456,7 @@ def test_stroke_of_the_probe_limits_the_feed(make, recorder, kind):
 
 
 @pytest.mark.req("M-203", "M-204")
-@pytest.mark.parametrize("signal", ["PLC_EXT_LATCH_CONTROL", "PLC_FIRST_EVENT"])
+@pytest.mark.parametrize("signal", ["PLC_EXT_LATCH_CONTROL", "PLC_FIRST_EVENT", "EXT_PROBE_WITH_DRIVE"])
 def test_source_that_is_not_built_says_so(make, signal):
     with pytest.raises(NotEmulated, match=signal):
         make({"axis.Z.start_mm": 20.0, "axis.Z.kenngr.measure.signal": signal}).run(
@@ -474,3 +474,54 @@ def test_measured_value_is_a_record_with_its_instant(make, face, recorder):
     assert record.dc_ns - bench.kernel.setup.dc_epoch_ns == edge.at_ns
     assert record.acs_tenth_um == 1_000_000
     assert result.variables["V.A.MESS.Z"] == result.variables["V.A.MEAS.ACS.VALUE.Z"] == 100.0
+
+
+@pytest.mark.req("M-004", "M-006", "M-199")
+def test_default_place_of_the_latch_is_the_drive(make, face):
+    """DRIVE_TYPE_DEFAULT with a CANopen drive: the drive measures, whatever the PLC does."""
+    settings = face | {"axis.Z.start_mm": 110.0, "axis.Z.kenngr.measure.signal": "DRIVE_TYPE_DEFAULT"}
+    result = make(settings, plc=[]).run("%p\nN10 G100 Z95 F6000\nN20 M30\n")
+
+    assert [(one.source, one.acs_mm) for one in result.measurements] == [("DRIVE", 100.0)]
+
+
+@pytest.mark.req("M-180", "M-181", "M-184")
+def test_timestamp_needs_no_input_at_the_drive(make, face):
+    """Nothing is wired to the drive: EL1252 channel 2 and the HLI alone deliver the position."""
+    settings = face | {"axis.Z.start_mm": 110.0, "axis.Z.probe_input_1": "", "axis.Z.probe_input_2": ""}
+    result = make(settings).run("%p\nN10 G100 Z95 F6000\nN20 M30\n")
+
+    assert [(one.source, one.acs_mm) for one in result.measurements] == [("PLC_TIMESTAMP", 100.0)]
+
+
+@pytest.mark.req("M-184")
+def test_signal_on_the_other_channel_of_the_terminal_does_not_count(make, face):
+    settings = face | {
+        "axis.Z.start_mm": 110.0,
+        "terminal.probe.wiring.ch1": "probe",
+        "terminal.probe.wiring.ch2": "",
+    }
+    assert not make(settings).run("%p\nN10 G100 Z95 F6000\nN20 M30\n").measurements
+
+
+@pytest.mark.req("M-055", "M-063", "M-065")
+def test_factor_of_the_offset(make, face):
+    """G101 Z0.5 includes half of it, until G102."""
+    bench = make(face | {"axis.Z.start_mm": 110.0})
+    result = bench.run(
+        "%p\nN10 G100 Z90 F6000\nN20 G101 Z0.5\nN30 G01 Z50 F6000\n"
+        'N40 #MSG SYN["%.3f %.3f", V.A.MEIN.Z, V.A.ABS.Z]\nN50 G102 Z0\nN60 G01 Z50\n'
+        'N70 #MSG SYN["%.3f %.3f", V.A.MEIN.Z, V.A.ABS.Z]\nN80 M30\n'
+    )
+
+    assert [one.text for one in result.messages] == ["5.000 55.000", "0.000 50.000"]
+
+
+@pytest.mark.req("M-002")
+def test_drives_of_other_axes_are_not_armed(make, recorder):
+    settings = {f"axis.{axis}.kenngr.measure.signal": "DRIVE" for axis in "XYZ"} | {"axis.Z.start_mm": 20.0}
+    bench = make(settings, recorder=recorder)
+    bench.run("%p\nN10 G100 Z10 F6000\nN20 M30\n")
+
+    assert [bool(recorder.column("probe_function", axis).any()) for axis in range(3)] == [False, False, True]
+    assert recorder.column("probe_function", 2)[-1] == 0, "and switched off behind the run"

@@ -12,7 +12,7 @@ from hli_bench.cli.params import kind_of
 def rows(text: str) -> dict[str, str]:
     """Return a printed sheet by heading."""
     cells = (re.split(r"  +", line, maxsplit=1) for line in text.splitlines())
-    return {heading: content for heading, content in cells}
+    return dict(cells)
 
 
 def shown(capsys: pytest.CaptureFixture[str], name: str) -> dict[str, str]:

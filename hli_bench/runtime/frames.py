@@ -4,7 +4,7 @@ Order within a cycle: SYNC, the drives' TPDOs by identifier, what else the drive
 identifier, what else the CNC sent. All of them carry the instant of the cycle (bus time is not emulated).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -129,6 +129,71 @@ class SilentNodes:
 
     def _set(self, node: int, *, silent: bool) -> None:
         self.now = self.now | {node} if silent else self.now - {node}
+
+
+@dataclass(frozen=True, slots=True)
+class Cyclic:
+    """Cycles from `first` on in which only these telegrams passed, behind the SYNC if `sync`."""
+
+    first: int
+    rows: Rows
+    telegrams: tuple[Telegram, ...]
+    sync: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """Frames of a cycle that are no telegrams."""
+
+    cycle: int
+    frames: tuple[CanFrame, ...]
+
+
+class BusOrder:
+    """Puts logged cycles and the frames beside them into the order in which they passed on the bus."""
+
+    __slots__ = ("_actual", "_command", "_silent")
+
+    def __init__(self, nodes: Sequence[NodeId]) -> None:
+        """`nodes` in row order."""
+        self._actual = actual_telegrams(nodes)
+        self._command = command_telegrams(nodes)
+        self._silent = SilentNodes(nodes)
+
+    def parts(
+        self, first: int, rows: Rows, others: Mapping[int, Sequence[CanFrame]]
+    ) -> Iterator[Cyclic | Beside]:
+        """Yield what passed in cycles `first` ...; `others` by cycle, those before `first` come first.
+
+        Take all parts before the next call: which drives are silent is known from what has passed.
+        """
+        begin = first
+        for cycle in sorted(others):
+            if cycle < first:
+                yield Beside(cycle, tuple(others[cycle]))
+                self._silent.take(others[cycle])
+                continue
+            yield from self._cyclic(begin, rows[begin - first : cycle - first])
+            yield from self._mixed(cycle, rows[cycle - first :][:1], others[cycle])
+            begin = cycle + 1
+        yield from self._cyclic(begin, rows[begin - first :])
+
+    def _cyclic(self, first: int, rows: Rows) -> Iterator[Cyclic]:
+        if len(rows):
+            self._silent.begin_cycle()
+            yield Cyclic(first, rows, (*self._sending(), *self._command), sync=True)
+
+    def _mixed(self, cycle: int, row: Rows, others: Sequence[CanFrame]) -> Iterator[Cyclic | Beside]:
+        self._silent.begin_cycle()
+        self._silent.take(others)
+        yield Cyclic(cycle, row, self._sending(), sync=True)
+        yield Beside(cycle, tuple(frame for frame in others if not from_cnc(frame)))
+        yield Cyclic(cycle, row, self._command, sync=False)
+        yield Beside(cycle, tuple(frame for frame in others if from_cnc(frame)))
+
+    def _sending(self) -> tuple[Telegram, ...]:
+        silent = self._silent.now
+        return tuple(telegram for telegram in self._actual if telegram.node not in silent)
 
 
 class CycleBuffer:

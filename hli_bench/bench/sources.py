@@ -50,15 +50,20 @@ def read_toml(path: Path) -> dict[str, Given]:
 @lru_cache(maxsize=64)
 def _read_text(text: str, file: str) -> Mapping[str, Given]:
     """Return the values of a TOML text; the same text is read once a process."""
+    lines = line_numbers(text)
+    tree = toml_tree(text, file)
+    return {key: Given(value, file, line_of(lines, key)) for key, value in flatten(tree).items()}
+
+
+def toml_tree(text: str, file: str) -> dict[str, object]:
+    """Return a TOML text as nested tables. Raises InputError with file and line."""
     try:
-        tree = tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         place = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
         line, column = (int(place[1]), int(place[2])) if place else (0, 0)
         message = re.sub(r"\s*\(at [^)]*\)", "", str(error))
         raise InputError(f"not valid TOML: {message}", file, line, column) from error
-    lines = line_numbers(text)
-    return {key: Given(value, file, _line(lines, key)) for key, value in flatten(tree).items()}
 
 
 def line_numbers(text: str) -> dict[str, int]:
@@ -87,7 +92,7 @@ def _joined(key: str) -> str:
     return ".".join(part.strip("\"'") for part in PART.findall(key))
 
 
-def _line(lines: Mapping[str, int], path: str) -> int:
+def line_of(lines: Mapping[str, int], path: str) -> int:
     """Return the line of a path, or of the innermost assignment that contains it."""
     while path:
         if path in lines:

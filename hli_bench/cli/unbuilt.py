@@ -17,8 +17,6 @@ def add(commands: Commands) -> None:
     clear = _command(commands, "clear", "take faults out of a bench that is up")
     clear.add_argument("fault", metavar="FAULT", nargs="?", help="kind of fault (default all)")
     add_connect(clear)
-    sweep = _command(commands, "sweep", "many runs over a grid of parameters or random draws")
-    sweep.add_argument("campaign", metavar="CAMPAIGN.toml")
     _command(commands, "scope", "the web scope")
     trace = commands.add_parser("trace", help="recorded runs")
     actions = trace.add_subparsers(dest="action", required=True, title="commands")

@@ -1,0 +1,174 @@
+"""Who does the runs: processes of this computer, or a Dask cluster. Each run gives the same bits with all of them."""
+
+import multiprocessing
+import signal
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from multiprocessing.connection import Connection, wait
+from typing import Any, Final, Protocol, cast
+
+from hli_bench.base.errors import EnvironmentLacks, InputError
+from hli_bench.base.loading import module
+from hli_bench.sweep.work import Failure, Job, Row, Run, code_digest, run_chunk
+
+Chunk = list[Row | Failure]
+_Pipe = Connection
+AHEAD: Final = 2
+"""Chunks that a worker has at a time: one at work, one waiting, so that it never waits itself."""
+END_S: Final = 5.0
+DASK: Final = "dask://"
+LOCAL: Final = "local"
+DASK_LOCAL: Final = "dask-local"
+
+
+class Engine(Protocol):
+    """Does chunks of runs and yields what they came to, in any order."""
+
+    def chunks(self, job: Job, chunks: Iterator[Sequence[Run]]) -> Iterator[Chunk]:
+        """Do all chunks. `chunks` is asked for more as workers become free."""
+
+
+def engine(text: str, workers: int) -> Engine:
+    """Return the engine of `--engine`. Raises InputError."""
+    if text == LOCAL:
+        return LocalProcesses(workers)
+    if text == DASK_LOCAL:
+        return Dask(None, workers)
+    if text.startswith(DASK) and text.removeprefix(DASK).rpartition(":")[2].isdigit():
+        return Dask(text.removeprefix(DASK), workers)
+    message = f"{text!r} is not valid, expected {LOCAL}, {DASK}HOST:PORT or {DASK_LOCAL}"
+    raise InputError(message, file="--engine")
+
+
+# -- processes of this computer ---------------------------------------------------------------------------
+
+
+class LocalProcesses:
+    """As many processes as asked for; each ends with its pipe, so none is left when this process is killed."""
+
+    def __init__(self, workers: int) -> None:
+        self._workers = workers
+
+    def chunks(self, job: Job, chunks: Iterator[Sequence[Run]]) -> Iterator[Chunk]:
+        """Do all chunks. Raises EnvironmentLacks when a process dies."""
+        context = multiprocessing.get_context("spawn")
+        with ExitStack() as closing:
+            waiting: dict[_Pipe, int] = {}
+            for _ in range(self._workers):
+                pipe = closing.enter_context(_Worker(context, job))
+                waiting[pipe] = sum(_hand_out(pipe, chunks) for _ in range(AHEAD))
+            while any(waiting.values()):
+                ready = wait([pipe for pipe, count in waiting.items() if count])
+                for pipe in cast("list[_Pipe]", ready):
+                    try:
+                        done: Chunk = pipe.recv()
+                    except (EOFError, ConnectionError) as error:
+                        raise EnvironmentLacks(
+                            "a worker process has died (out of memory?); the same command goes on from here"
+                        ) from error
+                    waiting[pipe] += _hand_out(pipe, chunks) - 1
+                    yield done
+
+
+class _Worker:
+    """One worker process as its pipe."""
+
+    def __init__(self, context: Any, job: Job) -> None:
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_work, args=(theirs, job), daemon=True)
+        self._process.start()
+        theirs.close()
+
+    def __enter__(self) -> _Pipe:
+        pipe: _Pipe = self._pipe
+        return pipe
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        self._pipe.close()
+        if kind is not None:
+            self._process.kill()
+        self._process.join(END_S)
+        if self._process.exitcode is None:
+            self._process.kill()
+            self._process.join()
+
+
+def _hand_out(pipe: _Pipe, chunks: Iterator[Sequence[Run]]) -> int:
+    """Give the next chunk to a worker; return how many it got."""
+    chunk = next(chunks, None)
+    if chunk is None:
+        return 0
+    pipe.send(chunk)
+    return 1
+
+
+def _work(pipe: _Pipe, job: Job) -> None:
+    """Do chunks until the pipe ends. Ctrl-C is left to the process at the other end."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    while True:
+        try:
+            runs = pipe.recv()
+            pipe.send(run_chunk(job, runs))
+        except (EOFError, ConnectionError):
+            return
+
+
+# -- Dask -------------------------------------------------------------------------------------------------
+
+
+class Dask:
+    """A Dask cluster: the one at `address`, or `workers` processes of this computer."""
+
+    def __init__(self, address: str | None, workers: int) -> None:
+        self._address = address
+        self._workers = workers
+
+    def chunks(self, job: Job, chunks: Iterator[Sequence[Run]]) -> Iterator[Chunk]:
+        """Do all chunks. Raises EnvironmentLacks when there is no such cluster or its workers do not fit."""
+        try:
+            dask: Any = module("distributed")
+        except InputError as error:
+            raise EnvironmentLacks("this engine needs Dask: pip install 'hli-bench[dask]'") from error
+        with ExitStack() as closing:
+            target: Any = self._address
+            if target is None:
+                target = closing.enter_context(
+                    dask.LocalCluster(n_workers=self._workers, threads_per_worker=1, dashboard_address=None)
+                )
+            try:
+                client = closing.enter_context(dask.Client(target, timeout=END_S))
+            except (OSError, TimeoutError) as error:
+                raise EnvironmentLacks(f"no Dask scheduler at {self._address}") from error
+            threads = client.nthreads()
+            _check(client, threads)
+            shared = client.scatter(job, broadcast=True)
+            first = [
+                client.submit(run_chunk, shared, chunk, pure=False)
+                for chunk in _take(chunks, AHEAD * len(threads))
+            ]
+            running = dask.as_completed(first)
+            for future in running:
+                done: Chunk = future.result()
+                future.release()
+                for chunk in _take(chunks, 1):
+                    running.add(client.submit(run_chunk, shared, chunk, pure=False))
+                yield done
+
+
+def _take(chunks: Iterator[Sequence[Run]], count: int) -> list[Sequence[Run]]:
+    """Return the next chunks."""
+    return [chunk for _ in range(count) if (chunk := next(chunks, None)) is not None]
+
+
+def _check(client: Any, threads: dict[str, int]) -> None:
+    """Raise EnvironmentLacks unless the workers can give the same results as this process."""
+    if not threads:
+        raise EnvironmentLacks("the Dask cluster has no workers")
+    if any(count != 1 for count in threads.values()):
+        raise EnvironmentLacks("a bench needs a process of its own: start `dask worker` with --nthreads 1")
+    try:
+        digests = set(client.run(code_digest).values())
+    except ModuleNotFoundError as error:
+        raise EnvironmentLacks("hli-bench is not installed where the Dask workers run") from error
+    if digests != {code_digest()}:
+        raise EnvironmentLacks("the Dask workers run another version of hli-bench than this process")

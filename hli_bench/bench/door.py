@@ -62,15 +62,11 @@ class HliDoor:
             engine.kernel.publish()
             self.publish(engine.cycle, engine.dc_ns, engine.link.images(engine.cycle))
         self._acknowledge()
-        for request in self._server.requests():
-            self._serve(request)
-        self._let_go()
+        self._attend(self._server.requests())
 
     def wait(self, timeout_s: float) -> None:
         """Wait for something to do while time stands still, and do it."""
-        for request in self._server.wait_request(timeout_s):
-            self._serve(request)
-        self._let_go()
+        self._attend(self._server.wait_request(timeout_s))
 
     def publish(self, cycle: int, dc_ns: Ns, io: Mapping[str, bytes]) -> None:
         """Put terminals, changed units and the image of a cycle, once."""
@@ -94,6 +90,12 @@ class HliDoor:
     def state_changed(self) -> None:
         """Put mode and state of the CNC."""
         self._server.put_state(self._state())
+
+    def _attend(self, requests: Iterable[Request]) -> None:
+        """Do what was asked. Who departed goes first: one who comes may have the name of one who went."""
+        self._let_go()
+        for request in requests:
+            self._serve(request)
 
     def _serve(self, request: Request) -> None:
         match request:
@@ -142,6 +144,9 @@ class HliDoor:
             cycles = period_cycles(request.plc, request.period_us, cycle_ns)
         except InputError as error:
             request.refuse(error.message)
+            return
+        if any(plc.name == request.plc for plc in engine.plcs):
+            request.refuse(f"a PLC called {request.plc!r} is attached already")
             return
         port = AttachedPlc(
             request.plc, cycles, self._server, self.publish, lockstep=self._lockstep, timeout_s=ANSWER_S

@@ -200,6 +200,10 @@ class Served:
         """Wait until a program runs."""
         return until(lambda: self.state()["state"] == "active")
 
+    def settled(self, condition: Callable[[dict[str, Any]], Any]) -> None:
+        """Wait until the state is as it should be."""
+        assert until(lambda: condition(self.state())), self.state()
+
 
 @pytest.fixture
 def serve(start: Start, endpoint: str) -> Callable[..., Served]:

@@ -1,0 +1,199 @@
+"""What a PLC of its own may do to a bench: die, freeze, quarrel with another, write nonsense."""
+
+import json
+import os
+import signal
+import struct
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hli_bench.shells.zenoh_session import connect
+
+UNIT = "ax/3/lr_mc_control/probing_signal"
+PLC_STOPPED = 40011
+CRASHING = """
+from hli_bench.plc import Plc
+
+class Crashing(Plc):
+    period_us = 1000
+
+    def start(self, hli, io):
+        hli.ax[3].lr_mc_control.release_feedhold.enable_w = True
+        self.cycles = 0
+
+    def cycle(self, hli, io):
+        self.cycles += 1
+        if self.cycles == 50:
+            raise ValueError("no idea what to do")
+"""
+SECOND = """
+from hli_bench.plc import Plc
+
+class Second(Plc):
+    period_us = 1000
+
+    def cycle(self, hli, io):
+        hli.ax[3].lr_mc_control.probing_signal.command_w = not hli.ax[3].lr_mc_control.probing_signal.command_w
+"""
+
+
+def kill(plc: Any) -> None:
+    os.kill(plc.process.pid, signal.SIGKILL)
+
+
+def freeze(plc: Any) -> None:
+    os.kill(plc.process.pid, signal.SIGSTOP)
+
+
+@pytest.mark.parametrize("pace", ["free", "real"])
+@pytest.mark.parametrize("end", [kill, freeze])
+def test_a_plc_that_goes_ends_the_program_but_not_the_bench(
+    serve: Any, endless: Path, tmp_path: Path, result: Any, pace: str, end: Callable[[Any], None]
+) -> None:
+    bench = serve("--plc", "none", "--pace", pace)
+    plc, run = bench.plc(), bench.run(endless, "--result", tmp_path / "result.json")
+    assert bench.running()
+    with bench.client() as client:
+        assert client.get(f"{UNIT}/enable_w") is True
+        end(plc)
+        assert run.end() == 1
+        assert [(error["id"], error["severity"]) for error in result()["errors"]] == [(PLC_STOPPED, "error")]
+        assert run.err[0].startswith(f"P-ERR-{PLC_STOPPED}")
+        assert "demo" in run.err[0]
+        assert client.get(f"{UNIT}/enable_w") is False
+        assert client.get("ax/3/lr_mc_control/release_feedhold/enable_w") is False
+        assert client.state()["plcs"] == []
+        client.reset()
+        assert client.state()["state"] == "ready"
+
+
+@pytest.mark.parametrize("pace", ["free", "real"])
+def test_a_new_plc_takes_the_place_of_one_that_was_killed(serve: Any, probe: Path, pace: str) -> None:
+    bench = serve("--plc", "none", "--pace", pace)
+    kill(bench.plc())
+    bench.settled(lambda state: state["plcs"] == [])
+    with bench.client() as client:
+        assert client.get(f"{UNIT}/enable_w") is False
+    bench.plc()
+    run = bench.run(probe)
+    assert run.end() == 0, run.err
+    assert run.out == ["V.A.MESS.Z=298.000000"]
+
+
+def test_a_plc_that_thaws_attaches_again(serve: Any, endless: Path, program: Any) -> None:
+    bench = serve("--plc", "none", "--pace", "real")
+    plc, run = bench.plc(), bench.run(endless)
+    assert bench.running()
+    freeze(plc)
+    assert run.end() == 1
+    os.kill(plc.process.pid, signal.SIGCONT)
+    bench.settled(lambda state: [one["name"] for one in state["plcs"]] == ["demo"])
+    with bench.client() as client:
+        client.reset()
+    assert bench.run(program("N10 G01 G90 Z299 F6000\nN20 M30\n")).end() == 0
+
+
+def test_a_script_that_fails_is_bad_input_of_its_process_and_a_plc_stop_for_the_cnc(
+    serve: Any, endless: Path, tmp_path: Path
+) -> None:
+    script = tmp_path / "crashing.py"
+    script.write_text(CRASHING)
+    bench = serve("--plc", "none", "--pace", "free")
+    plc = bench.plc(script)
+    run = bench.run(endless)
+    assert run.end() == 1
+    assert run.err[0].startswith(f"P-ERR-{PLC_STOPPED}")
+    assert plc.end() == 2
+    assert "crashing.py" in plc.err[-1]
+    assert "no idea what to do" in plc.err[-1]
+
+
+def test_the_second_plc_on_a_unit_is_refused_and_reported(serve: Any, probe: Path, tmp_path: Path) -> None:
+    script = tmp_path / "second.py"
+    script.write_text(SECOND)
+    bench = serve("--plc", "none", "--pace", "free")
+    bench.plc()
+    second = bench.plc(script)
+    run = bench.run(probe)
+    assert run.end() == 0, run.err
+    assert run.out == ["V.A.MESS.Z=298.000000"]
+    with bench.client() as client:
+        reported = client.hli_errors()
+    assert reported["refused"] > 0
+    last = reported["last"][-1]
+    assert last["path"] == f"{UNIT}/command_w"
+    assert last["writer"] == "second"
+    assert "'demo'" in last["reason"]
+    assert second.process.poll() is None
+
+
+def test_a_second_plc_of_the_same_name_is_turned_away(serve: Any, start: Any) -> None:
+    bench = serve("--pace", "free")
+    second = start("plc", "demo.py", "--connect", bench.endpoint)
+    assert second.end() == 2
+    assert second.err == ["a PLC called 'demo' is attached already"]
+    assert bench.plcs() == ["demo"]
+
+
+@pytest.fixture(scope="module")
+def session(bench: Any) -> Iterator[Any]:
+    """A Zenoh session as any client opens one."""
+    session = connect(bench.endpoint)
+    yield session
+    session.close()
+
+
+@pytest.mark.parametrize(
+    ("path", "payload", "reason"),
+    [
+        (f"{UNIT}/command_w", b"\1\0", "2 bytes, BOOL takes 1"),
+        (f"{UNIT}/command_w", b"", "0 bytes, BOOL takes 1"),
+        ("ax/3/lr_mc_control/timestamp/command_w", b"\1\0\0\0", "4 bytes, SGN64 takes 8"),
+        (f"{UNIT}/state_r", b"\1", "a client may only read it"),
+        (f"{UNIT}/comand_w", b"\1", "comand_w"),
+        ("ax/99/lr_mc_control/probing_signal/command_w", b"\1", "ax/99"),
+    ],
+)
+def test_a_put_that_is_wrong_changes_nothing_and_is_reported(
+    bench: Any, session: Any, path: str, payload: bytes, reason: str
+) -> None:
+    with bench.client() as client:
+        before, values = client.hli_errors()["refused"], client.get(UNIT)
+        session.put(f"demo/hli/unit/{path}", payload)
+        bench.settled(lambda _: client.hli_errors()["refused"] == before + 1)
+        last = client.hli_errors()["last"][-1]
+        assert last["path"].removeprefix("hli/unit/") == path
+        assert reason in last["reason"]
+        assert client.get(UNIT) == values
+
+
+@pytest.mark.parametrize(
+    ("message", "reason"),
+    [
+        (b"\1\2\3", "bytes"),
+        (struct.pack("<QHB", 0, 65000, 1), "65000"),
+        (struct.pack("<QH", 0, 0), "byte"),
+    ],
+)
+def test_commands_of_a_wrong_size_are_refused_and_the_plc_stays(
+    bench: Any, session: Any, message: bytes, reason: str
+) -> None:
+    """Attached by hand: the bench asks nothing of a PLC while time stands still, so that all comes from here."""
+    token = session.liveliness().declare_token("demo/plc/hand/alive")
+    with bench.client() as client:
+        client.ask_packed("plc/hand/attach", json.dumps({"period_us": 1000}))
+        before = client.hli_errors()["refused"]
+        terms = client.state()
+        session.put("demo/plc/hand/commands", message)
+        session.put("demo/plc/hand/commands", struct.pack("<Q", terms["cycle"] + 1))
+        client.set("ax/3/head/plc_present_w", "FALSE")
+        assert client.hli_errors()["refused"] == before + 1
+        last = client.hli_errors()["last"][-1]
+        assert last["path"] == "plc/hand/commands"
+        assert reason in last["reason"]
+        assert bench.plcs() == ["hand"]
+    token.undeclare()
+    bench.settled(lambda state: state["plcs"] == [])

@@ -7,22 +7,24 @@ equal runs give equal bytes however they were cut into strides. Decision 0011.
 """
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from struct import Struct
 from struct import error as StructError  # noqa: N812 an exception class in lower case
 from types import TracebackType
-from typing import Any, Final, Self
+from typing import Any, BinaryIO, Final, Self
 
 import numpy as np
-from mcap.exceptions import EndOfFile
-from mcap.records import Channel, Message, Schema
-from mcap.stream_reader import StreamReader
+from mcap.exceptions import EndOfFile, McapError
+from mcap.records import Channel, DataEnd, Header, McapRecord, Message, Schema
+from mcap.stream_reader import CRCValidationError, StreamReader
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
+from zstandard import ZstdError
 
 from hli_bench.base.errors import InputError
+from hli_bench.base.ids import NodeId
 from hli_bench.base.time import Ns
 from hli_bench.kernel.records import Emitted
 from hli_bench.kernel.setup import KernelSetup
@@ -39,10 +41,11 @@ CHUNK_BYTES: Final = 1 << 20
 """Uncompressed; what a crash can cost at most."""
 WRITER: Final = "hli-bench"
 
+TOPICS: Final = ("meta", "axes", "can", "edges", "plc", "refused", "cnc")
+
 _BLOCK: Final = Struct("<QII")
 _CAN: Final = Struct("<HBB")
 _REMOTE: Final = 1
-_TOPICS: Final = ("meta", "axes", "can", "edges", "plc", "refused", "cnc")
 _PACKED: Final = "packed"
 _TEXT: Final = {"type": "string"}
 _WHOLE: Final = {"type": "integer"}
@@ -96,6 +99,35 @@ class TraceEvent:
     value: Any
 
 
+@dataclass(frozen=True, slots=True)
+class TraceAxis:
+    """An axis of the recorded machine, in the order of the rows."""
+
+    name: str
+    number: int
+    node: NodeId
+    kind: str
+
+
+@dataclass(frozen=True, slots=True)
+class TraceMeta:
+    """What was recorded: machine, its cycle and axes, the overrides of its keys as text."""
+
+    machine: str
+    cycle_ns: int
+    dc_epoch_ns: int
+    axes: tuple[TraceAxis, ...]
+    overrides: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A block with the events up to its end, in order of time."""
+
+    block: AxesBlock
+    events: tuple[TraceEvent, ...]
+
+
 class TraceFile:
     """Observer that writes the trace of a run. Memory does not grow with the run."""
 
@@ -115,7 +147,7 @@ class TraceFile:
         self._file = path.open("wb")
         self._writer = Writer(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start(profile="", library=WRITER)
-        for topic in _TOPICS:
+        for topic in TOPICS:
             self._register(topic)
         axes = [
             {"name": axis.name, "number": axis.number, "node": axis.node, "kind": axis.kind}
@@ -220,7 +252,7 @@ class TraceFile:
 
 def _id(topic: str) -> int:
     """Return the channel of a topic: the writer numbers them from 1 in the order of registration."""
-    return _TOPICS.index(topic) + 1
+    return TOPICS.index(topic) + 1
 
 
 def _json(value: object) -> bytes:
@@ -230,16 +262,56 @@ def _json(value: object) -> bytes:
 def read(path: Path) -> Iterator[AxesBlock | TraceEvent]:
     """Read a trace in the order of the file; one that was cut off ends with its last complete chunk.
 
-    Raises InputError for a file that is no trace, OSError when it cannot be opened.
+    Raises InputError for a file that is no trace or is damaged, OSError when it cannot be opened.
     """
-    schemas: dict[int, Schema] = {}
-    channels: dict[int, Channel] = {}
-    with path.open("rb") as file:
-        if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
-            raise InputError("no trace: not an MCAP file", file=str(path))
-        file.seek(0)
-        with suppress(EndOfFile, StructError):
-            for record in StreamReader(file).records:
+    return TraceReader(path).entries()
+
+
+class TraceReader:
+    """A trace on disk, read from its beginning as often as wanted in constant memory.
+
+    `torn` tells, once all has been read, that the file was cut off behind its last complete chunk.
+    Raises InputError for a file that is no trace or is damaged, OSError when it cannot be opened.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.torn = False
+        with closing(self.entries()) as entries:
+            entry = next(entries, None)
+        if not isinstance(entry, TraceEvent) or entry.topic != "meta":
+            raise self._error("no trace: cut off in front of its first complete chunk")
+        if entry.value["format"] > FORMAT:
+            raise self._error(f"trace of format {entry.value['format']}, expected at most {FORMAT}")
+        self.meta = _meta(entry.value)
+
+    def stretches(self) -> Iterator[Stretch]:
+        """Yield what was recorded block by block, `meta` excepted."""
+        block = AxesBlock(0, np.zeros((0, len(self.meta.axes)), LOG.newbyteorder("<")))
+        events: list[TraceEvent] = []
+        for entry in self.entries():
+            if isinstance(entry, TraceEvent):
+                if entry.topic != "meta":
+                    events.append(entry)
+                continue
+            if len(block.rows) or events:
+                yield Stretch(block, tuple(events))
+            block, events = entry, []
+        if len(block.rows) or events:
+            yield Stretch(block, tuple(events))
+
+    def entries(self) -> Generator[AxesBlock | TraceEvent, None, None]:
+        """Yield everything in the order of the file."""
+        schemas: dict[int, Schema] = {}
+        channels: dict[int, Channel] = {}
+        self.torn = False
+        with self.path.open("rb") as file:
+            if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+                raise self._error("no trace: not an MCAP file")
+            file.seek(0)
+            for record in self._records(file):
+                if isinstance(record, Header) and record.library != WRITER:
+                    raise self._error(f"no trace: an MCAP file of {record.library!r}")
                 if isinstance(record, Schema):
                     schemas[record.id] = record
                 elif isinstance(record, Channel):
@@ -247,6 +319,26 @@ def read(path: Path) -> Iterator[AxesBlock | TraceEvent]:
                 elif isinstance(record, Message):
                     channel = channels[record.channel_id]
                     yield _decoded(record, channel.topic, schemas[channel.schema_id])
+
+    def _records(self, file: BinaryIO) -> Iterator[McapRecord]:
+        """Yield records up to the end of the data; note when the file ends in front of it."""
+        try:
+            for record in StreamReader(file, validate_crcs=True).records:
+                if isinstance(record, DataEnd):
+                    return
+                yield record
+        except (EndOfFile, StructError):
+            self.torn = True
+        except (McapError, ZstdError, CRCValidationError, UnicodeDecodeError, MemoryError) as error:
+            raise self._error(f"damaged in front of byte {file.tell()}: {error}") from error
+
+    def _error(self, message: str) -> InputError:
+        return InputError(message, file=str(self.path))
+
+
+def _meta(value: Mapping[str, Any]) -> TraceMeta:
+    axes = tuple(TraceAxis(**axis) for axis in value["axes"])
+    return TraceMeta(value["machine"], value["cycle_ns"], value["dc_epoch_ns"], axes, value["overrides"])
 
 
 def _decoded(message: Message, topic: str, schema: Schema) -> AxesBlock | TraceEvent:

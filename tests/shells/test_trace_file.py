@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 from mcap.reader import make_reader
+from mcap.writer import Writer
 
 from hli_bench.base.errors import InputError
 from hli_bench.bench.bench import Bench
 from hli_bench.laws.rows import LOG, LOG_CYCLES
-from hli_bench.shells.trace_file import BLOCK_CYCLES, AxesBlock, TraceEvent, TraceFile, read
+from hli_bench.shells.trace_file import BLOCK_CYCLES, AxesBlock, TraceEvent, TraceFile, TraceReader, read
 from hli_bench.wire.can import CanFrame
 from hli_bench.wire.hli import Commands, Write
 from hli_bench.wire.signals import Edge
@@ -128,11 +129,51 @@ def test_a_file_cut_off_anywhere_is_read_to_its_last_chunk(tmp_path: Path) -> No
     for size in (*np.linspace(8, len(data) - 100, 40, dtype=int), *range(len(data) - 50, len(data))):
         torn = tmp_path / "torn.mcap"
         torn.write_bytes(data[:size])
-        entries = [(type(entry), getattr(entry, "first", None)) for entry in read(torn)]
+        try:
+            reader = TraceReader(torn)
+        except InputError as error:
+            assert "cut off in front of its first complete chunk" in str(error)
+            counts.append(0)
+            continue
+        entries = [(type(entry), getattr(entry, "first", None)) for entry in reader.entries()]
         assert entries == complete[: len(entries)]
+        assert reader.torn or len(entries) == len(complete)
         counts.append(len(entries))
     assert counts == sorted(counts)
-    assert 0 < counts[20] < len(complete)
+    assert counts[0] == 0 < counts[20] < len(complete)
+
+
+def test_a_damaged_chunk_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "damaged.mcap"
+    made_up(path, 10_000).close()
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 0x40
+    path.write_bytes(data)
+    with pytest.raises(InputError, match=r"damaged\.mcap: damaged in front of byte [0-9]+"):
+        list(read(path))
+
+
+def test_stretches_are_blocks_with_what_happened_in_them(run: tuple[Bench, Path]) -> None:
+    reader = TraceReader(run[1])
+    assert [axis.name for axis in reader.meta.axes] == ["X", "Y", "Z", "X2", "A", "B", "S"]
+    stretches = list(reader.stretches())
+    assert not reader.torn
+    assert sum(len(stretch.block.rows) for stretch in stretches) == run[0].engine.cycle
+    for stretch in stretches:
+        times = [event.at_ns for event in stretch.events]
+        assert times == sorted(times)
+    entries = [entry for entry in read(run[1]) if isinstance(entry, TraceEvent)]
+    assert [event for stretch in stretches for event in stretch.events] == entries[1:]
+
+
+def test_a_foreign_mcap_file_is_no_trace(tmp_path: Path) -> None:
+    path = tmp_path / "foreign.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(library="something else")
+        writer.finish()
+    with pytest.raises(InputError, match="an MCAP file of 'something else'"):
+        TraceReader(path)
 
 
 def test_a_run_that_dies_leaves_its_chunks(tmp_path: Path) -> None:

@@ -476,7 +476,8 @@ def test_a_second_plc_is_refused_the_units_of_the_first(bench: SmallBench, proce
     commands = bench.server.commands("second", bench.cycle, PATIENCE_S)
     assert commands is not None
     refusals = bench.access.apply(commands)
-    assert len(refusals) == len(commands.writes) > 0
+    units = [write.path for write in commands.writes if not write.path.endswith("/plc_present_w")]
+    assert [refusal.path for refusal in refusals] == units != []
     assert {refusal.reason for refusal in refusals} == {"the unit belongs to PLC 'first'"}
 
 

@@ -182,7 +182,6 @@ def test_a_file_that_cannot_be_written_is_named_before_the_run(
         ("run", "probe.nc", "--modbus", "127.0.0.1:5020"),
         ("run", "probe.nc", "--can", "socketcand:127.0.0.1:29536"),
         ("machine", "check", "demo", "--modbus"),
-        ("sweep", "campaign.toml"),
         ("scope",),
         ("trace", "show", "run.mcap"),
         ("trace", "diff", "one.mcap", "two.mcap"),

@@ -42,7 +42,8 @@ def help_of(*arguments: str, capsys: pytest.CaptureFixture[str]) -> str:
 
 def test_help_lists_all_commands(capsys: pytest.CaptureFixture[str]) -> None:
     text = help_of(capsys=capsys)
-    assert "{" + ",".join(COMMANDS) + "}" in text
+    listed = text[text.index("{") + 1 : text.index("}")]
+    assert set(listed.split(",")) == set(COMMANDS)
     assert "exit status: 0" in text
 
 

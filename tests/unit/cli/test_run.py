@@ -24,6 +24,11 @@ KEYS_OF = {
     "measurements": {"axis", "block", "source", "acs_mm", "pcs_mm", "dc_ns", "edge"},
 }
 MEASURED = ["V.A.MESS.Z=100.000000", "V.A.MOFFS.Z=80.000000", "V.A.MERF.Z=1", "V.A.ABS.Z=110.000000"]
+NEAR = """N10 #MEAS MODE[1]
+N20 G90 G100 Z280 F6000
+N30 #MSG SYN["V.A.MESS.Z=%f", V.A.MESS.Z]
+N40 M30
+"""
 COMMAND = [sys.executable, "-m", "hli_bench.cli.main"]
 
 
@@ -101,7 +106,8 @@ def served() -> Iterator[str]:
     """The endpoint of a bench in free pace that is up, without a PLC."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
         endpoint = f"tcp/127.0.0.1:{listener.getsockname()[1]}"
-    options = ["--pace", "free", "--plc", "none", "--zenoh", endpoint, *FACE]
+    near = ("--set", "plant.probe.Z.face_mm=298", "--set", "plant.probe.Z.material=below")
+    options = ["--pace", "free", "--plc", "none", "--zenoh", endpoint, *near]
     bench = subprocess.Popen([*COMMAND, "serve", *options], stdout=subprocess.PIPE, text=True)
     assert bench.stdout is not None
     try:
@@ -165,8 +171,10 @@ def test_a_program_runs_on_the_bench_that_is_up_with_an_attached_script(
     try:
         looks = (json.loads("\n".join(ask(capsys, served, "state", "--json"))) for _ in range(100))
         assert next(look["plcs"][0]["name"] for look in looks if look["plcs"]) == "probing"
-        file = tmp_path / "r.json"
-        assert ask(capsys, served, "run", "probe.nc", "--result", str(file)) == MEASURED
+        program, file = tmp_path / "near.nc", tmp_path / "r.json"
+        program.write_text(NEAR, encoding="utf-8")
+        lines = ask(capsys, served, "run", str(program), "--result", str(file))
+        assert lines == ["V.A.MESS.Z=298.000000"]
         assert set(read_result(file)) == RESULT_KEYS
     finally:
         script.send_signal(signal.SIGINT)

@@ -129,7 +129,7 @@ class Bench:
             variables=self.kernel.channel.variables(),
             measurements=measurements(self.kernel),
             homing=collector.homing,
-            sim_s=cycles * self.config.cycle_ns * 1e-9,
+            sim_s=round(cycles * self.config.cycle_ns * 1e-9, 9),
             wall_s=watch.seconds(),
             cycles=cycles,
             late_cycles=self._pace.lateness.late if self._pace else 0,

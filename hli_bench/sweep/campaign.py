@@ -31,7 +31,7 @@ KEYS: Final = (
 COLUMNS: Final = ("run", "status", "errors", "cycles")
 """Columns of the table beside keys and metrics."""
 NAME: Final = re.compile(r"[A-Za-z_]\w*")
-MOST: Final = 100_000_000
+MOST: Final = 10_000_000
 """Most runs of a campaign, decided here: more is a mistake in the grid."""
 
 
@@ -313,7 +313,9 @@ class _Reader:
             load(campaign.job.machine, taken)
         except InputError as error:
             if error.file and error.file != SET:
-                raise
+                if varied is None:
+                    raise
+                raise self._error_of(varied, f"{varied} = {settings[varied]}: {error}") from error
             key = varied or next((key for key in settings if error.message.startswith(key)), "")
             raise self._error_of(key, error.message) from error
         except BenchError as error:

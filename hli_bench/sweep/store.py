@@ -35,18 +35,9 @@ class Store:
 
     def __enter__(self) -> Self:
         """Open or begin the folder. Raises InputError when it belongs to another campaign or is in use."""
-        try:
-            (self.folder / PARTS).mkdir(parents=True, exist_ok=True)
-            lock = self._closing.enter_context((self.folder / "lock").open("w"))
-        except OSError as error:
-            raise InputError(f"--out: cannot be written: {error.strerror}", file=str(self.folder)) from error
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise InputError("a sweep is at work in this folder", file=str(self.folder)) from error
-        self._check_manifest()
-        for left in (self.folder / PARTS).glob("*.new"):
-            left.unlink()
+        with ExitStack() as opened:
+            self._open(opened)
+            self._closing = opened.pop_all()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -73,7 +64,22 @@ class Store:
         self._write(table, self.table)
         for part in self._parts():
             part.unlink()
+        (self.folder / PARTS).rmdir()
         return table
+
+    def _open(self, opened: ExitStack) -> None:
+        try:
+            (self.folder / PARTS).mkdir(parents=True, exist_ok=True)
+            lock = opened.enter_context((self.folder / "lock").open("w"))
+        except OSError as error:
+            raise InputError(f"--out: cannot be written: {error.strerror}", file=str(self.folder)) from error
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise InputError("a sweep is at work in this folder", file=str(self.folder)) from error
+        self._check_manifest()
+        for left in (self.folder / PARTS).glob("*.new"):
+            left.unlink()
 
     def _check_manifest(self) -> None:
         manifest = {"code": code_digest(), **self._campaign.digests}

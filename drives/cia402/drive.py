@@ -156,8 +156,8 @@ class Drive:
     def cyclic_signature(self) -> bool:
         """Whether numbers may pass between rows without frames.
 
-        True while the node is OPERATIONAL with the telegram for one of its probing inputs, follows its target and takes touch probe
-        functions as they come. `encode_cycle` then gives the frames that would have been sent.
+        True while the node is OPERATIONAL with the telegram for one of its probing inputs, follows its target
+        and takes touch probe functions as they come. `encode_cycle` then gives the frames that would have been sent.
         """
         changes = self.device.pdos.changes
         if changes != self._signature_changes:

@@ -12,7 +12,7 @@ from hli_bench.base.errors import EnvironmentLacks, InputError, NotEmulated
 from hli_bench.bench import telegraph
 from hli_bench.bench.config import MachineConfig
 from hli_bench.bench.telegraph import Order
-from hli_bench.laws.rows import MachineRows
+from hli_bench.laws.rows import MachineRows, Rows
 from hli_bench.plant.build import signal_names
 from hli_bench.runtime.machine_side import SYNC
 from hli_bench.shells.can_bus import CanBus
@@ -90,6 +90,13 @@ class RemoteMachine:
         frames = self._answer(self._drives.ask(telegraph.order(Order.CYCLE, cycle, body)))
         self._take_images(cycle)
         return frames
+
+    def exchange(self, cycle: int, axis: Rows) -> None:
+        """Never asked: no cycle is quiet."""
+
+    def timers(self, cycle: int) -> list[CanFrame]:
+        """Return nothing: what is due by time comes with the telegrams."""
+        return []
 
     def quiet(self, cycle: int) -> int:
         """No cycle passes without frames."""

@@ -34,8 +34,14 @@ class Link(Protocol):
     def telegrams(self, cycle: int, inbox: Sequence[CanFrame]) -> list[CanFrame]:
         """Exchange the frames of a SYNC."""
 
+    def exchange(self, cycle: int, axis: Rows) -> None:
+        """Exchange the numbers of a SYNC in which only control words changed."""
+
+    def timers(self, cycle: int) -> list[CanFrame]:
+        """Return what the drives send by time in a quiet cycle."""
+
     def quiet(self, cycle: int) -> int:
-        """Return how many cycles may be strided over."""
+        """Return how many cycles may be strided over, or passed by `exchange`."""
 
     def images(self, cycle: int) -> Mapping[str, bytes]:
         """Return the process images by terminal."""
@@ -94,6 +100,8 @@ class LocalLink:
         self.advance = side.advance
         self.telegrams = side.telegrams
         self.quiet = side.quiet
+        self.exchange = side.exchange
+        self.timers = side.timers
         self.image_horizon = side.image_horizon
         self.take_edges = side.take_edges
 
@@ -103,6 +111,10 @@ class LocalLink:
 
 
 NO_TICK: Final = 1 << 62
+FRAMES: Final = 0
+"""No stretch: real frames pass in the next cycle."""
+WORDS: Final = -1
+"""No stretch: control words change in the next cycle, nothing else."""
 
 
 class Engine:
@@ -173,11 +185,15 @@ class Engine:
             done, where = 0, law.SENSE
         cycle = first + done
         if where == law.SENSE:
-            self._telegrams(cycle)
+            if room == WORDS:
+                self._exchange(cycle)
+            else:
+                self._telegrams(cycle)
             _, where = self._stride(cycle, 1, law.SENSE)
             if where == law.MACHINE:
                 done += 1
         if where == law.ACT:
+            self._timers(cycle)
             self._think(cycle)
             self._stride(cycle, 1, law.ACT)
             done += 1
@@ -203,14 +219,16 @@ class Engine:
         self._tick = self._next_tick()
 
     def _stretch(self, first: int, limit: int) -> int:
-        """Return how many cycles from `first` on may be strided over, 0 when frames have to pass."""
-        if self._orders or self._new_words:
-            return 0
+        """Return how many cycles from `first` on may be strided over; WORDS or FRAMES when not even one may."""
+        if self._orders:
+            return FRAMES
+        if self._new_words:
+            return WORDS if self.link.quiet(first) > 0 else FRAMES
         if first >= self._loud:
             self._loud = first + self.link.quiet(first)
             if first >= self._loud:
-                return 0
-        last = self._tick if self._tick < limit else limit
+                return FRAMES
+        last = min(self._tick, limit)
         if last >= self._loud:
             last = self._loud - 1
         if last == first:
@@ -228,6 +246,20 @@ class Engine:
         axis = self.kernel.rows.axis
         words: bytes = axis["controlword"].tobytes() + axis["probe_function"].tobytes()
         return words
+
+    def _exchange(self, cycle: int) -> None:
+        """Pass the telegrams of a cycle in which a control word changes, by numbers."""
+        self._words, self._new_words, self._loud = self._word_bytes(), False, 0
+        self.link.exchange(cycle, self.kernel.rows.axis)
+
+    def _timers(self, cycle: int) -> None:
+        """Take what the drives send by time in a quiet cycle."""
+        frames = self.link.timers(cycle)
+        if frames:
+            self._loud = 0
+            self._tell_frames(cycle, frames)
+            if self.kernel.take_frames(frames):
+                self._decide = True
 
     def _telegrams(self, cycle: int) -> None:
         """Pass real frames at the SYNC of a cycle."""
@@ -272,6 +304,7 @@ class Engine:
     def _complete(self, first: int, count: int) -> None:
         """Cycles are done: tell the observers, run the PLC tasks that are due."""
         self.cycle = first + count - 1
+        self._timers(self.cycle)
         edges = self.link.take_edges()
         for observer in self.observers:
             observer.cycles(first, count)

@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 
 from hli_bench.base.time import Ns
 from hli_bench.laws.machine import advance_machine
-from hli_bench.laws.rows import MachineRows
+from hli_bench.laws.rows import MachineRows, Rows
+from hli_bench.laws.stride import exchange_in
 from hli_bench.wire.can import CanFrame
 from hli_bench.wire.images import ProcessImage
 from hli_bench.wire.signals import Edge
 
 SYNC: Final = CanFrame(0x80)
+NOT_KNOWN: Final = -1
 FAR: Final = 1 << 40
 """More cycles than any run has."""
 
@@ -53,6 +55,9 @@ class DriveNode(Protocol):
     @property
     def statusword(self) -> int:
         """Object 0x6041."""
+
+    def exchange(self, controlword: int, target: int, probe_function: int, now: Ns) -> int:
+        """Act at a SYNC as on the standard RPDOs with these numbers, without frames; return the statusword."""
 
 
 class TerminalNode(Protocol):
@@ -93,7 +98,9 @@ class MachineSide:
         self.sub_steps = sub_steps
         self.dc_epoch_ns = dc_epoch_ns
         self.signals = signals
-        self._horizon = 0
+        self._due = NOT_KNOWN
+        """Next cycle in which a drive sends by time or a fault begins; what is quiet ends with it."""
+        self._ticked = NOT_KNOWN
         self._slow_terminals = [one for one in terminals if one.period_ns > cycle_ns]
         self._forced = sorted(forced, key=lambda one: one.at_ns)
 
@@ -104,10 +111,7 @@ class MachineSide:
     def advance(self, cycle: int) -> None:
         """Move the machine to the SYNC of `cycle`."""
         rows = self.rows
-        while self._forced and self._forced[0].at_ns <= (cycle - 1) * self.cycle_ns:
-            fault = self._forced.pop(0)
-            level = -1 if fault.level is None else fault.level
-            rows.signal[self.signals.index(fault.signal)]["forced"] = level
+        self._force(Ns((cycle - 1) * self.cycle_ns))
         advance_machine(
             rows.servo,
             rows.switch,
@@ -131,19 +135,49 @@ class MachineSide:
                 frames += drive.on_frame(frame, now)
         for drive in self.drives:
             frames += drive.tick(now)
-        self._horizon = 0
+        self._due = NOT_KNOWN
+        """Next cycle in which a drive sends by time or a fault begins: the last one that is quiet."""
+        self._ticked = NOT_KNOWN
         return sorted(frames, key=lambda frame: frame.cob_id)
 
+    def exchange(self, cycle: int, axis: Rows) -> None:
+        """Pass the standard telegrams of a SYNC in which only control words changed, by numbers."""
+        self._due = NOT_KNOWN
+        now = Ns(cycle * self.cycle_ns)
+        exchange_in(axis, self.rows.servo)
+        for drive, row in zip(self.drives, axis, strict=True):
+            row["statusword"] = drive.exchange(
+                int(row["controlword"]), int(row["target"]), int(row["probe_function"]), now
+            )
+
+    def timers(self, cycle: int) -> list[CanFrame]:
+        """Return what the drives send by time in a cycle without frames (heartbeats); begin faults that are due."""
+        if cycle < self._due or cycle == self._ticked:
+            return []
+        self._due, self._ticked = NOT_KNOWN, cycle
+        now = Ns(cycle * self.cycle_ns)
+        self._force(now)
+        return sorted(
+            (frame for drive in self.drives for frame in drive.tick(now)), key=lambda one: one.cob_id
+        )
+
     def quiet(self, cycle: int) -> int:
-        """Return for how many cycles from `cycle` on no drive has anything to say but its telegrams."""
-        if cycle >= self._horizon:
+        """Return for how many cycles from `cycle` on only telegrams pass; `timers` has to be asked in the last."""
+        if cycle > self._due:
             if not all(drive.cyclic_signature() for drive in self.drives):
                 return 0
             now = Ns((cycle - 1) * self.cycle_ns)
-            due = [at for drive in self.drives if (at := drive.next_due(now)) is not None]
-            due += [Ns(fault.at_ns + self.cycle_ns) for fault in self._forced[:1]]
-            self._horizon = min((-(-at // self.cycle_ns) for at in due), default=cycle + FAR)
-        return max(self._horizon - cycle, 0)
+            dues = [at for drive in self.drives if (at := drive.next_due(now)) is not None]
+            dues += [fault.at_ns for fault in self._forced[:1]]
+            self._due = max(cycle, min((-(-at // self.cycle_ns) for at in dues), default=cycle + FAR))
+        return self._due - cycle + 1
+
+    def _force(self, now: Ns) -> None:
+        """Hold the signals whose faults have begun at their level."""
+        while self._forced and self._forced[0].at_ns <= now:
+            fault = self._forced.pop(0)
+            level = -1 if fault.level is None else fault.level
+            self.rows.signal[self.signals.index(fault.signal)]["forced"] = level
 
     def images(self, cycle: int) -> list[ProcessImage]:
         """Return the process images at the SYNC of `cycle`."""

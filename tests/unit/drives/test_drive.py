@@ -40,7 +40,7 @@ def refused(master: Any, index: int, subindex: int, data: bytes) -> AbortCode:
 class CyclicNode402(canopen.BaseNode402):
     """python-canopen's 402 master whose waiting for a TPDO is one bus cycle."""
 
-    def check_statusword(self, timeout: float | None = None) -> int:  # noqa: ARG002 - the master's signature
+    def check_statusword(self, timeout: float | None = None) -> int:
         for pdo in self.rpdo.values():
             if pdo.enabled:
                 self.network.send_message(pdo.cob_id, pdo.data)

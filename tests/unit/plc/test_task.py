@@ -19,7 +19,7 @@ class Cam(Plc):
     def __init__(self) -> None:
         self.delay = TON()
 
-    def start(self, hli: Any, io: Any) -> None:  # noqa: ARG002 - the signature is given
+    def start(self, hli: Any, io: Any) -> None:
         hli.ax[1].lr_mc_control.reference_cam.enable_w = True
 
     def cycle(self, hli: Any, io: Any) -> None:
@@ -44,7 +44,7 @@ def test_two_tasks_of_one_process_have_their_own_time() -> None:
 
 
 class Broken(Plc):
-    def cycle(self, hli: Any, io: Any) -> None:  # noqa: ARG002 - the signature is given
+    def cycle(self, hli: Any, io: Any) -> None:
         hli.ax[1].lr_mc_control.reference_cam.comand_w = True
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from hli_bench.base.errors import BenchError
-from hli_bench.cli import doctor, drive, hli, machine, params, plc, run, serve, state, sweep, unbuilt
+from hli_bench.cli import doctor, drive, hli, machine, params, plc, run, serve, state, sweep, trace, unbuilt
 
 INTERRUPTED: Final = 130
 """Exit status after Ctrl-C, as a shell reports it."""
@@ -32,7 +32,7 @@ def parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
     )
     commands = top.add_subparsers(dest="command", required=True, title="commands")
-    for module in (run, serve, plc, hli, state, params, drive, machine, sweep, unbuilt, doctor):
+    for module in (run, serve, plc, hli, state, params, drive, machine, trace, sweep, unbuilt, doctor):
         module.add(commands)
     return top
 

@@ -18,23 +18,13 @@ def add(commands: Commands) -> None:
     clear.add_argument("fault", metavar="FAULT", nargs="?", help="kind of fault (default all)")
     add_connect(clear)
     _command(commands, "scope", "the web scope")
-    trace = commands.add_parser("trace", help="recorded runs")
-    actions = trace.add_subparsers(dest="action", required=True, title="commands")
-    for name, files, text in (
-        ("show", ("FILE",), "print what a recorded run holds"),
-        ("diff", ("FILE", "OTHER"), "compare two recorded runs"),
-        ("export", ("FILE",), "write a recorded run in another form"),
-    ):
-        action = _command(actions, name, text, command=f"trace {name}")
-        for file in files:
-            action.add_argument(file.lower(), metavar=file)
 
 
-def _command(commands: Commands, name: str, text: str, command: str = "") -> argparse.ArgumentParser:
+def _command(commands: Commands, name: str, text: str) -> argparse.ArgumentParser:
     parser: argparse.ArgumentParser = commands.add_parser(
         name, help=f"{text} (not built)", description=f"Not built: {text}."
     )
-    parser.set_defaults(execute=refuse, refused=command or name)
+    parser.set_defaults(execute=refuse, refused=name)
     return parser
 
 

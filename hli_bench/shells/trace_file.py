@@ -336,6 +336,11 @@ class TraceReader:
         return InputError(message, file=str(self.path))
 
 
+def axes_text(meta: TraceMeta) -> str:
+    """Return the axes as people read them."""
+    return ", ".join(f"{axis.name} (axis {axis.number}, node {axis.node}, {axis.kind})" for axis in meta.axes)
+
+
 def _meta(value: Mapping[str, Any]) -> TraceMeta:
     axes = tuple(TraceAxis(**axis) for axis in value["axes"])
     return TraceMeta(value["machine"], value["cycle_ns"], value["dc_epoch_ns"], axes, value["overrides"])

@@ -19,6 +19,22 @@ APPLICATION = range(0x2000, 0x10000)
 ALL_OBJECTS = range(0x1000, 0x10000)
 
 
+class _Getters(dict[tuple[int, int], ReadHook]):
+    """Read hooks by address; what has none is read from the stored values, by a getter made when first asked for."""
+
+    __slots__ = ("_values",)
+
+    def __init__(self, values: dict[tuple[int, int], Value]) -> None:
+        super().__init__()
+        self._values = values
+
+    def __missing__(self, address: tuple[int, int]) -> ReadHook:
+        if address not in self._values:
+            raise KeyError(address)
+        getter = self[address] = partial(self._values.__getitem__, address)
+        return getter
+
+
 class ObjectValues:
     """Values of one node. `upload`/`download` are the bus side, `get`/`put` the device's own side."""
 
@@ -29,9 +45,7 @@ class ObjectValues:
         self.node_id = node_id
         self._defaults = self._factory()
         self._values = dict(self._defaults)
-        self.getters: dict[tuple[int, int], ReadHook] = {
-            address: partial(self._values.__getitem__, address) for address in self._values
-        }
+        self.getters: dict[tuple[int, int], ReadHook] = _Getters(self._values)
         """How each object is read; a dictionary of its own so that a PDO packs without detours."""
         self._write_hooks: dict[tuple[int, int], WriteHook] = {}
 

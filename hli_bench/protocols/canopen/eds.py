@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
 from functools import lru_cache
+from itertools import takewhile
 from pathlib import Path
 from typing import Final
 
@@ -101,6 +102,10 @@ class ObjectDictionary:
 
     def __iter__(self) -> Iterator[Entry]:
         return iter(self.entries.values())
+
+    def subindices(self, index: int) -> tuple[int, ...]:
+        """Return the sub-indices of an array or a record behind its count in 0."""
+        return tuple(takewhile(lambda sub: (index, sub) in self.entries, range(1, 0xFF)))
 
     def has_object(self, index: int) -> bool:
         """Whether any sub-index of `index` exists."""

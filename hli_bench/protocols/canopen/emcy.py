@@ -44,7 +44,7 @@ class EmergencyProducer:
         self._queue: list[bytes] = []
         self._allowed_at = Ns(0)
         self._active: dict[int, ErrorRegister] = {}
-        self._history_depth = sum(1 for sub in range(1, 0xFF) if values.has(_HISTORY, sub))
+        self._history_depth = len(values.description.subindices(_HISTORY))
         if self._history_depth:
             values.on_write(_HISTORY, 0, self._clear_history)
         if values.has(_COB_ID):

@@ -181,7 +181,7 @@ class HeartbeatConsumer:
 
     def __init__(self, values: ObjectValues) -> None:
         self._values = values
-        self._subs = tuple(sub for sub in range(1, 0x80) if values.has(_CONSUMER, sub))
+        self._subs = values.description.subindices(_CONSUMER)
         self._watched: dict[int, _Watched] = {}
         for sub in self._subs:
             values.on_write(_CONSUMER, sub, partial(self._write, sub))

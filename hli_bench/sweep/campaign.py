@@ -4,7 +4,7 @@ import hashlib
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, cast
 
@@ -98,6 +98,7 @@ class _Reader:
         self._lines = line_numbers(text)
         self._tree = toml_tree(text, str(path))
         self._places: dict[str, str] = {}
+        self._scripts: set[Path] = set()
 
     def campaign(self) -> Campaign:
         """Return the campaign."""
@@ -131,7 +132,7 @@ class _Reader:
         if campaign.runs > MOST:
             raise self._error("grid", f"{campaign.runs} runs, allowed 1..{MOST}")
         self._try(campaign)
-        digests = _digests(campaign)
+        digests = _digests(campaign, self._scripts)
         return Campaign(
             **{name: getattr(campaign, name) for name in Campaign.__slots__} | {"digests": digests}
         )
@@ -310,7 +311,8 @@ class _Reader:
         """Load the machine with these settings; an error about one of them stands at its line."""
         taken = {key: value for key, value in settings.items() if not key.startswith(PROGRAM)}
         try:
-            load(campaign.job.machine, taken)
+            config = load(campaign.job.machine, taken)
+            self._scripts |= {plc.script for plc in config.plcs}
         except InputError as error:
             if error.file and error.file != SET:
                 if varied is None:
@@ -357,16 +359,15 @@ def _extremes(of: Distribution) -> tuple[Plain, ...]:
     return of.draw(2.0**-20), of.draw(1 - 2.0**-20)
 
 
-def _digests(campaign: Campaign) -> dict[str, str]:
-    """Return a digest of each part of a campaign and of the files that it names."""
+def _digests(campaign: Campaign, scripts: Collection[Path]) -> dict[str, str]:
+    """Return a digest of each part of a campaign and of the files that it names; `scripts` of the machine."""
     job = campaign.job
-    folder = machine_folder(job.machine)
-    config = load(job.machine, {})
-    scripts = [plc.script for plc in config.plcs] if job.plc is None else [Path(name) for name in job.plc]
+    machine = replace(load(job.machine), folder=Path(), plcs=(), notes=())
+    used = scripts if job.plc is None else [Path(name) for name in job.plc]
     parts: dict[str, Any] = {
         "program": job.text,
-        "machine": [(path.name, path.read_bytes()) for path in sorted(folder.iterdir()) if path.is_file()],
-        "plc": [path.read_bytes() for path in scripts],
+        "machine": machine,
+        "plc": sorted(path.read_bytes() for path in used),
         "settings": sorted(campaign.fixed.items()),
         "grid": list(campaign.grid.items()),
         "random": [(key, repr(of)) for key, of in campaign.random.items()],

@@ -1,8 +1,9 @@
 """Who does the runs: processes of this computer, or a Dask cluster. Each run gives the same bits with all of them."""
 
+import gc
 import multiprocessing
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from multiprocessing.connection import Connection, wait
 from typing import Any, Final, Protocol, cast
@@ -12,10 +13,14 @@ from hli_bench.base.loading import module
 from hli_bench.sweep.work import Failure, Job, Row, Run, code_digest, run_chunk
 
 Chunk = list[Row | Failure]
+Work = Callable[[Job, Sequence[Run]], Chunk]
+"""Does a chunk; a function that another process can import."""
 _Pipe = Connection
 AHEAD: Final = 2
 """Chunks that a worker has at a time: one at work, one waiting, so that it never waits itself."""
 END_S: Final = 5.0
+GC: Final = (50_000, 20, 100)
+"""When a worker collects garbage: a bench is some ten thousand objects that go together, what is loaded stays."""
 DASK: Final = "dask://"
 LOCAL: Final = "local"
 DASK_LOCAL: Final = "dask-local"
@@ -46,8 +51,9 @@ def engine(text: str, workers: int) -> Engine:
 class LocalProcesses:
     """As many processes as asked for; each ends with its pipe, so none is left when this process is killed."""
 
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, work: Work = run_chunk) -> None:
         self._workers = workers
+        self._work = work
 
     def chunks(self, job: Job, chunks: Iterator[Sequence[Run]]) -> Iterator[Chunk]:
         """Do all chunks. Raises EnvironmentLacks when a process dies."""
@@ -55,7 +61,7 @@ class LocalProcesses:
         with ExitStack() as closing:
             waiting: dict[_Pipe, int] = {}
             for _ in range(self._workers):
-                pipe = closing.enter_context(_Worker(context, job))
+                pipe = closing.enter_context(_Worker(context, job, self._work))
                 waiting[pipe] = sum(_hand_out(pipe, chunks) for _ in range(AHEAD))
             while any(waiting.values()):
                 ready = wait([pipe for pipe, count in waiting.items() if count])
@@ -73,9 +79,9 @@ class LocalProcesses:
 class _Worker:
     """One worker process as its pipe."""
 
-    def __init__(self, context: Any, job: Job) -> None:
+    def __init__(self, context: Any, job: Job, work: Work) -> None:
         self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_work, args=(theirs, job), daemon=True)
+        self._process = context.Process(target=_serve, args=(theirs, job, work), daemon=True)
         self._process.start()
         theirs.close()
 
@@ -102,13 +108,16 @@ def _hand_out(pipe: _Pipe, chunks: Iterator[Sequence[Run]]) -> int:
     return 1
 
 
-def _work(pipe: _Pipe, job: Job) -> None:
+def _serve(pipe: _Pipe, job: Job, work: Work) -> None:
     """Do chunks until the pipe ends. Ctrl-C is left to the process at the other end."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(*GC)
     while True:
         try:
             runs = pipe.recv()
-            pipe.send(run_chunk(job, runs))
+            pipe.send(work(job, runs))
         except (EOFError, ConnectionError):
             return
 
@@ -119,9 +128,10 @@ def _work(pipe: _Pipe, job: Job) -> None:
 class Dask:
     """A Dask cluster: the one at `address`, or `workers` processes of this computer."""
 
-    def __init__(self, address: str | None, workers: int) -> None:
+    def __init__(self, address: str | None, workers: int, work: Work = run_chunk) -> None:
         self._address = address
         self._workers = workers
+        self._work = work
 
     def chunks(self, job: Job, chunks: Iterator[Sequence[Run]]) -> Iterator[Chunk]:
         """Do all chunks. Raises EnvironmentLacks when there is no such cluster or its workers do not fit."""
@@ -143,7 +153,7 @@ class Dask:
             _check(client, threads)
             shared = client.scatter(job, broadcast=True)
             first = [
-                client.submit(run_chunk, shared, chunk, pure=False)
+                client.submit(self._work, shared, chunk, pure=False)
                 for chunk in _take(chunks, AHEAD * len(threads))
             ]
             running = dask.as_completed(first)
@@ -151,7 +161,7 @@ class Dask:
                 done: Chunk = future.result()
                 future.release()
                 for chunk in _take(chunks, 1):
-                    running.add(client.submit(run_chunk, shared, chunk, pure=False))
+                    running.add(client.submit(self._work, shared, chunk, pure=False))
                 yield done
 
 

@@ -95,10 +95,10 @@ def _row(job: Job, run: Run) -> Row:
 
 
 def code_digest() -> str:
-    """Return a digest of the bench's code: the same code gives the same results."""
+    """Return a digest of the bench's code and drive models: the same code gives the same results."""
     package = Path(__file__).resolve().parent.parent
     digest = hashlib.sha256()
-    for folder in (package, package.parent / "drives"):
-        for path in sorted(folder.rglob("*.py")):
+    for folder in (package, package.parent / "drives", package.parent / "eds"):
+        for path in sorted((*folder.rglob("*.py"), *folder.rglob("*.eds"))):
             digest.update(path.relative_to(folder.parent).as_posix().encode() + path.read_bytes())
     return digest.hexdigest()[:16]

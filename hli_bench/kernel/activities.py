@@ -13,7 +13,7 @@ from hli_bench.kernel.position_controller import measurement
 from hli_bench.kernel.sequence import Sequence
 from hli_bench.kernel.watches import cycle_reached
 from hli_bench.manual.errors import position_controller as errors
-from hli_bench.protocols.canopen.aborts import SdoAbort
+from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 
 
 class Activity(Protocol):
@@ -91,11 +91,12 @@ class DriveObject:
 
     def _answered(self, refused: SdoAbort | None) -> None:
         self._done = True
-        if refused is not None:
-            axis = self._core.axis(self._block.axis)
-            self._core.report(
-                errors.DRIVE_COMMAND_NOT_SUPPORTED, self._block.source, axis.number, axis=axis.index
-            )
+        if refused is None:
+            return
+        late = refused.code == AbortCode.TIME_OUT
+        sheet = errors.DRIVE_COMMAND_TIMEOUT if late else errors.DRIVE_COMMAND_NOT_SUPPORTED
+        axis = self._core.axis(self._block.axis)
+        self._core.report(sheet, self._block.source, axis.number, axis=axis.index)
 
 
 class Dwelling:

@@ -154,10 +154,8 @@ def walk_path(axis: Rows, path: Rows, segment: Rows, time: float) -> None:
             wanted *= row["override"]
         low = one["deceleration"][0]
         high = one["deceleration"][1]
-        v_end = one["v_end"]
         if row["state"] == BRAKE:
             wanted = 0.0
-            v_end = 0.0
             low = row["brake"][0]
             high = row["brake"][1]
             split = row["brake_split"]
@@ -169,7 +167,7 @@ def walk_path(axis: Rows, path: Rows, segment: Rows, time: float) -> None:
             row["s"],
             row["v"],
             one["length"],
-            v_end,
+            one["v_end"],
             wanted,
             one["acceleration"][0],
             one["acceleration"][1],
@@ -180,10 +178,8 @@ def walk_path(axis: Rows, path: Rows, segment: Rows, time: float) -> None:
         )
         row["s"] = s
         row["v"] = v
-        if row["state"] == BRAKE:
-            if v <= 0.0 or s >= one["length"]:
-                row["v"] = 0.0
-                row["state"] = IDLE
+        if row["state"] == BRAKE and v <= 0.0:
+            row["state"] = IDLE
             return
         if s < one["length"]:
             return

@@ -68,10 +68,10 @@ def advance(
             above = v > split > v_end and rest > slow
             if above:
                 rate = (v * v - split * split) / (2.0 * (rest - slow))
-                lasts = (v - split) / rate
+                lasts = 2.0 * (rest - slow) / (v + split)
             else:
                 rate = (v * v - v_end * v_end) / (2.0 * rest)
-                lasts = (v - v_end) / rate
+                lasts = 2.0 * rest / (v + v_end)
             step = min(lasts, time)
             s += v * step - 0.5 * rate * step * step
             time -= step
@@ -105,7 +105,10 @@ def advance(
             if top - v <= 1e-12 * (1.0 + v):
                 if v <= 0.0:
                     return length, v_end, time
-                at_curve = True
+                if v > v_end:
+                    at_curve = True
+                else:
+                    v_wanted = v  # rounding has left it a hair below: there is nothing to gain
                 continue
             lasts = (top - v) / rate
             step = min(lasts, time)

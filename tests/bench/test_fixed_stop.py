@@ -273,3 +273,43 @@ def test_drive_value_above_its_type_is_warned_of_and_limited(make, recorder):
     assert result.completed
     assert [(one.id, one.severity) for one in result.errors] == [(70383, "warning")]
     assert recorder.sdo_writes(NODE_Z, 0x6072) == [65_535]
+
+
+@pytest.mark.req("M-165")
+def test_value_that_the_drive_refuses_is_an_error(make, errors, recorder):
+    bench = make({"axis.Z.antr.function[0].wr_ident[0]": "5FFF_00"}, recorder=recorder)
+    result = bench.run("%p\nN10 #DRIVE WR SYN [AX=Z KEY=MON_WINDOW VAL=1 WAIT]\nN20 M30\n")
+
+    assert errors(result) == [(70278, "Z", "N10")]
+    assert recorder.sdo_answers(NODE_Z, 0x5FFF) == [0x80]
+
+
+def test_drive_that_does_not_answer_is_a_timeout(make, errors):
+    bench = make()
+    bench.start_up()
+    telegrams = bench.engine.link.telegrams
+    bench.engine.link.telegrams = lambda cycle, inbox: [
+        frame for frame in telegrams(cycle, inbox) if frame.cob_id != 0x580 + NODE_Z
+    ]
+    result = bench.run("%p\nN10 #DRIVE WR SYN [AX=Z KEY=TORQUE_LIMIT VAL=1 WAIT]\nN20 M30\n")
+
+    assert errors(result) == [(70275, "Z", "N10")]
+
+
+def test_write_without_syn_goes_out_while_the_path_runs(make, recorder):
+    """Without SYN the value is written at decoding, with SYN when the motion before it is done."""
+    bench = make(recorder=recorder)
+    bench.run(
+        "%p\nN10 G01 X10 F600\nN20 #DRIVE WR [AX=Z KEY=TORQUE_LIMIT VAL=20]\n"
+        "N30 #DRIVE WR SYN [AX=Z KEY=TORQUE_LIMIT VAL=30 WAIT]\nN40 M30\n"
+    )
+    x = recorder.column("command", 0)
+    at = [
+        cycle
+        for cycle, frame in recorder.bus
+        if frame.cob_id == 0x600 + NODE_Z and frame.data[1:3] == b"\x72\x60" and frame.data[0] & 0xE0 == 0x20
+    ]
+
+    assert recorder.sdo_writes(NODE_Z, 0x6072) == [200, 300]
+    assert x[at[0] - 1] < 1_000
+    assert x[at[1] - 1] == 100_000

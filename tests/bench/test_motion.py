@@ -338,3 +338,29 @@ def test_axis_passes_the_wrap_of_its_32_bit_position(make, recorder):
     assert bench.position_mm("X") == pytest.approx(20_485.0, abs=1e-3)
     assert recorder.column("position", X)[-1] < 0
     assert np.abs(recorder.column("lag", X)[20:]).max() < 5_000
+
+
+def test_reset_in_short_blocks_brakes_over_their_ends(make, recorder):
+    """0.1 mm blocks at 100 mm/s: the braking way is 25 blocks long."""
+    bench = make({"axis.X.getriebe[0].vb_eilgang": 500_000}, recorder=recorder)
+    blocks = [f"G01 X{n / 5:.1f} F6000" for n in range(1, 200)]
+    bench.kernel.start(["%p", *blocks, "M30"], "p")
+    bench.engine.wake()
+    bench.advance(180)
+    fastest = path_speed(recorder).max()
+    bench.reset()
+    bench.advance(300)
+    change = np.diff(path_speed(recorder)) / 1e-3
+
+    assert fastest > 60.0
+    assert change.min() >= -1001.0
+    assert bench.kernel.core.at_rest
+
+
+@pytest.mark.parametrize(("largest", "factor"), [(1000, 1.0), (1200, 1.2), (600, 0.6)])
+def test_override_is_limited_by_p_chan_00056(make, recorder, acts, largest, factor):
+    plc = acts((1, "channel.override.command_w = 1500"))
+    bench = make({"channel.max_vb_override": largest}, recorder=recorder, plc=[plc])
+    bench.run("%p\nN10 G01 X20 F3000\nN20 M30\n")
+
+    assert path_speed(recorder).max() == pytest.approx(50.0 * factor, abs=1e-6)

@@ -256,7 +256,7 @@ def _missed(run: Run) -> None:
 
 def _not_ready(run: Run) -> None:
     core = run.core
-    axis = next(iter(run.pending))
+    axis = next(axis for axis, condition in run.pending.items() if condition is not None)
     core.report(errors.PROBING_NOT_INITIALISED, run.block.source, run.block.source.number, axis=axis)
     run.pending.clear()
 

@@ -1,5 +1,6 @@
 """Kernel side of a cycle on bare rows: feedback, conditions, path, axes that move by themselves."""
 
+import itertools
 import math
 
 import numpy as np
@@ -257,6 +258,23 @@ def test_brake_drops_the_distance_to_go(rows):
     assert rows.axis[0]["velocity"] == 0.0
 
 
+def test_brake_goes_on_over_the_ends_of_short_segments(rows):
+    """Blocks shorter than the braking way: no jump of the velocity at the end of one."""
+    for _ in range(40):
+        put(rows, 1000.0, v_end=4e5)
+    rows.segment["v_end"][39] = 0.0
+    rows.path[0]["v"] = 4e5
+    rows.path[0]["state"] = BRAKE
+    rows.path[0]["brake"] = (1e7, 1e7)
+    speeds = [4e5]
+    while rows.path[0]["state"] == BRAKE:
+        step(rows)
+        speeds.append(float(rows.path[0]["v"]))
+
+    assert rows.axis[0]["command"] == pytest.approx(4e5**2 / 2e7)
+    assert all(before - after <= 1e7 * T * (1 + 1e-9) for before, after in itertools.pairwise(speeds))
+
+
 def test_next_segment_begins_in_the_middle_of_a_cycle(rows):
     """A transition takes no time: two halves are as fast as one whole."""
     whole = KernelRows.allocate(2, 8)
@@ -268,6 +286,19 @@ def test_next_segment_begins_in_the_middle_of_a_cycle(rows):
         step(whole)
         step(rows)
         assert rows.axis[0]["command"] == pytest.approx(whole.axis[0]["command"], abs=1e-6)
+
+
+def test_velocity_a_hair_below_the_wanted_one_ends_a_cycle(rows):
+    """Left over by rounding at the end of a segment; the profile must neither hang nor accelerate."""
+    below = math.nextafter(1e6, 0.0)
+    put(rows, 2000.0, v_end=1e6)
+    put(rows, 60_000.0)
+    rows.path[0]["v"] = below
+    step(rows)
+    assert rows.axis[0]["command"] == pytest.approx(1000.0)
+    step(rows, 200)
+
+    assert rows.axis[0]["command"] == 62_000.0
 
 
 def test_jog_ramps_to_its_velocity_and_back(rows):

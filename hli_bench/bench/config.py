@@ -423,6 +423,7 @@ class _Loader:
             wiring=wiring,
             mode=self._value(table + "mode"),
             delay_ns=self._value(table + "delay_ns"),
+            clock_skew_ns=self._value(table + "clock_skew_ns"),
         )
         self._check_period(table + "period_us", settings.period_us)
         try:

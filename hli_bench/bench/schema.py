@@ -209,6 +209,13 @@ NODES: Final = (
     _text("terminal.<TERMINAL>.wiring.<CHANNEL>", "", 'signal at a channel: ch2 = "probe"'),
     _text("terminal.<TERMINAL>.mode", CONTINUOUS, "latch mode of its edges", (CONTINUOUS, SINGLE_EVENT)),
     _integer("terminal.<TERMINAL>.delay_ns", None, "input delay; default: the model's", 0, 10**9),
+    _integer(
+        "terminal.<TERMINAL>.clock_skew_ns",
+        0,
+        "how far its clock is ahead of DC time: latched times are off by it",
+        -(10**9),
+        10**9,
+    ),
     _text("fault[<N>].kind", None, "kind of fault", FAULTS),
     _text("fault[<N>].target", "", "what it concerns: a signal, an axis, a terminal, a PLC task"),
     _number("fault[<N>].at_ms", 0.0, "bench time at which it begins, ms", low=0.0),

@@ -190,9 +190,9 @@ def channel_settle(channel: Rows, number: int, now_ns: int, dc_epoch_ns: int) ->
         return
     row["taken"] |= bit
     if level:
-        row["latch_pos"] = dc_epoch_ns + due
+        row["latch_pos"] = dc_epoch_ns + due + row["skew_ns"]
     else:
-        row["latch_neg"] = dc_epoch_ns + due
+        row["latch_neg"] = dc_epoch_ns + due + row["skew_ns"]
 
 
 @law

@@ -168,6 +168,7 @@ CHANNEL: Final = np.dtype(
     [
         ("signal", "i4"),
         ("delay_ns", "i8"),
+        ("skew_ns", "i8"),  # how far the clock of the terminal is ahead of DC time
         ("single_event", "u1"),
         ("level", "u1"),  # behind the input filter
         ("level_due_ns", "i8"),

@@ -63,6 +63,7 @@ def build(settings: PlantSettings, channels: Sequence[Channel] = ()) -> Plant:
         row = rows.channel[number]
         row["signal"] = signals.index(channel.signal)
         row["delay_ns"] = channel.delay_ns
+        row["skew_ns"] = channel.clock_skew_ns
         row["single_event"] = channel.single_event
     _settle(rows)
     pending = np.full((max(PENDING_PER_SWITCH * switches, 1), 3), -1, np.int64)

@@ -16,7 +16,7 @@ def cam(axis: str) -> str:
 
 
 class Channel(Protocol):
-    """What a terminal tells about one of its inputs: its signal (empty: none), delay and latch mode."""
+    """What a terminal tells about one of its inputs: its signal (empty: none), delay, clock and latch mode."""
 
     @property
     def signal(self) -> str:
@@ -25,6 +25,10 @@ class Channel(Protocol):
     @property
     def delay_ns(self) -> int:
         """Input delay."""
+
+    @property
+    def clock_skew_ns(self) -> int:
+        """How far the clock of its latches is ahead of DC time."""
 
     @property
     def single_event(self) -> bool:

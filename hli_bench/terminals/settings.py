@@ -12,11 +12,12 @@ SINGLE_EVENT: Final = "single_event"
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """One input: the signal it is wired to (empty: none), its input delay, its latch mode."""
+    """One input: the signal it is wired to (empty: none), its input delay, its latch mode, its clock."""
 
     signal: str
     delay_ns: int = 0
     single_event: bool = False
+    clock_skew_ns: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +30,7 @@ class TerminalSettings:
     wiring: Mapping[str, str] = field(default_factory=dict)
     mode: str = CONTINUOUS
     delay_ns: int | None = None
+    clock_skew_ns: int = 0
 
 
 def wired(settings: TerminalSettings, count: int, delay_ns: int) -> tuple[Channel, ...]:
@@ -41,4 +43,5 @@ def wired(settings: TerminalSettings, count: int, delay_ns: int) -> tuple[Channe
             )
     delay = delay_ns if settings.delay_ns is None else settings.delay_ns
     single = settings.mode == SINGLE_EVENT
-    return tuple(Channel(settings.wiring.get(name, ""), delay, single) for name in names)
+    skew = settings.clock_skew_ns
+    return tuple(Channel(settings.wiring.get(name, ""), delay, single, skew) for name in names)

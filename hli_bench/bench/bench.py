@@ -8,11 +8,12 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 from hli_bench.base.errors import BenchError, InputError
+from hli_bench.base.time import NS_PER_S
 from hli_bench.bench import build, state
 from hli_bench.bench.config import MachineConfig, PlcConfig, load
 from hli_bench.bench.door import HliDoor, result_reply
 from hli_bench.bench.plc_ports import LocalPlc
-from hli_bench.bench.remote import RemoteMachine
+from hli_bench.bench.remote import RemoteEngine, RemoteMachine
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.kernel.records import Emitted
 from hli_bench.plc import Task
@@ -68,6 +69,8 @@ class Bench:
             self._pace = RealPace(self.config.cycle_ns) if pace == "real" else None
             self._plcs = plc_configs(self.config, plc)
             self._up = False
+            self.interrupted: Result | None = None
+            """What a program had done when it was interrupted."""
             # Built: from here on `close` ends what the stack holds.
             self._closing = stack.pop_all()
 
@@ -87,19 +90,25 @@ class Bench:
         """Switch on: bring all drives into operation, then start the PLC tasks. `run` does it when needed."""
         if self._up:
             return
-        self._up = True
+        if self.engine.cycle:
+            raise BenchError("this bench has failed to start; make a new one")
         self.engine.power_on()
         if not self._advance(lambda: self.kernel.ready, START_UP_CYCLES):
             raise BenchError(f"not all drives came into operation within {START_UP_CYCLES} cycles")
         self._attach_plcs()
+        self._up = True
         if self._pace is not None:
             self._pace.restart()
 
-    def run(self, program: str | Path | Iterable[str], name: str = "") -> Result:
+    def run(
+        self, program: str | Path | Iterable[str], name: str = "", *, limit_s: float | None = None
+    ) -> Result:
         """Run an NC program to its end and return the result.
 
-        `program` is NC text, a path, or lines. Raises InputError (file, line, column) for text that is no
-        NC program and NotEmulated for what is not built; errors of the emulated CNC stand in the result.
+        `program` is NC text, a path, or lines. A program that is not done after `limit_s` of machine time is
+        aborted. Raises InputError (file, line, column) for text that is no NC program and NotEmulated for
+        what is not built; errors of the emulated CNC stand in the result. When it is interrupted (Ctrl-C),
+        `interrupted` holds the result so far.
         """
         lines, name = _program(program, name)
         watch = Stopwatch()
@@ -107,23 +116,35 @@ class Bench:
         collector = Collector(self.kernel.setup.axes)
         self._tap.collector = collector
         first = self.engine.cycle
+        last = FOREVER if limit_s is None else first + round(limit_s * NS_PER_S / self.config.cycle_ns)
+        late = self._pace.lateness.late if self._pace else 0
+        ended = False
         try:
             self.kernel.start(lines, name)
             self.engine.wake()
             if self._door is not None:
                 self._door.state_changed()
-            self._advance(lambda: not self.kernel.channel.running, FOREVER)
-        except BaseException:
-            self.kernel.reset()
+            ended = self._advance(lambda: not self.kernel.channel.running, last)
+        except KeyboardInterrupt:
+            self.interrupted = self._result(name, "aborted", collector, first, watch, late)
             raise
         finally:
+            if not ended:
+                self.reset()
             self._tap.collector = None
             if self._door is not None:
                 self._door.state_changed()
+        status = "completed" if self.kernel.channel.completed else "error"
+        return self._result(name, status if ended else "aborted", collector, first, watch, late)
+
+    def _result(
+        self, name: str, status: str, collector: Collector, first: int, watch: Stopwatch, late: int
+    ) -> Result:
+        """Return the result of a program that began behind cycle `first`, with `late` late cycles before."""
         cycles = self.engine.cycle - first
         return Result(
             program=name,
-            status="completed" if self.kernel.channel.completed else "error",
+            status=status,
             messages=collector.messages,
             errors=collector.errors,
             variables=self.kernel.channel.variables(),
@@ -132,7 +153,7 @@ class Bench:
             sim_s=round(cycles * self.config.cycle_ns * 1e-9, 9),
             wall_s=watch.seconds(),
             cycles=cycles,
-            late_cycles=self._pace.lateness.late if self._pace else 0,
+            late_cycles=self._pace.lateness.late - late if self._pace else 0,
         )
 
     def advance(self, cycles: int) -> None:
@@ -191,9 +212,10 @@ class Bench:
             side = build.machine_side(self.config)
             self.terminal_layouts = build.terminal_layouts(self.config)
             return Engine(self.kernel, LocalLink(side), side.pending)
-        remote = self._closing.enter_context(RemoteMachine(self.config, machine, settings, can))
+        rows = self.kernel.rows.axis
+        remote = self._closing.enter_context(RemoteMachine(self.config, machine, settings, can, rows))
         self.terminal_layouts = build.terminal_layouts(self.config)
-        return Engine(self.kernel, remote, remote.pending)
+        return RemoteEngine(self.kernel, remote)
 
     def _open_door(self, endpoint: str, *, lockstep: bool) -> HliDoor:
         server = HliServer(endpoint, self.config.name, self.kernel.image.layout, self.terminal_layouts)

@@ -1,17 +1,21 @@
 """Drives and plant as a process of their own: `python -m hli_bench.bench.drives_process FD MACHINE SETTINGS CAN`.
 
-Over the pipe it gets one order a cycle; frames come and go over the pipe too, or over a CAN interface, where
-SYNC is what lets the machine move on.
+Over the pipe it gets one order a cycle, and over the pipe go the telegrams: as numbers while they are all that passes,
+else as frames. Over a CAN interface frames pass in every cycle, and SYNC is what lets the machine move on.
 """
 
 import json
 import sys
 from collections.abc import Sequence
 
+import numpy as np
+
 from hli_bench.base.errors import EnvironmentLacks
 from hli_bench.bench import build, telegraph
 from hli_bench.bench.config import load
-from hli_bench.bench.telegraph import Order
+from hli_bench.bench.telegraph import Numbers, Order, Reply
+from hli_bench.laws.rows import AXIS
+from hli_bench.laws.stride import exchange_in, exchange_out
 from hli_bench.runtime.machine_side import SYNC, MachineSide
 from hli_bench.shells.can_bus import CanBus
 from hli_bench.shells.processes import Pipe, work
@@ -25,6 +29,12 @@ class Drives:
         self._side = side
         self._pipe = pipe
         self._bus = bus
+        self._axis = np.zeros(len(side.rows.servo), AXIS)
+        """What the telegrams say, as numbers; the other fields are the kernel's and mean nothing here."""
+        self._numbers = Numbers(self._axis)
+        self._moved = 0
+        """The cycle to whose SYNC the machine has moved."""
+        self._raised = False
 
     def run(self) -> None:
         """Work until the kernel's process closes the pipe."""
@@ -35,11 +45,43 @@ class Drives:
                 return
             kind, cycle, body = telegraph.read_order(message)
             if kind is Order.POWER_ON:
-                self._answer(self._side.power_on())
+                self._answer(cycle, self._side.power_on())
                 continue
-            inbox = telegraph.read_frames(body) if self._bus is None else self._from_bus()
-            self._side.advance(cycle)
-            self._answer(self._side.telegrams(cycle, inbox))
+            if kind is Order.CYCLE:
+                inbox = telegraph.read_frames(body) if self._bus is None else self._from_bus()
+                self._advance(cycle)
+                self._answer(cycle, self._side.telegrams(cycle, inbox))
+            elif self._exchange(kind, cycle, body):
+                self._answer(cycle, numbers=self._numbers.actual())
+            else:
+                self._pipe.send(telegraph.reply(Reply.FAULT))
+                continue
+            if self._bus is None:
+                # The targets for the next cycle are known since the last SYNC: move on while the kernel works.
+                self._advance(cycle + 1)
+
+    def _advance(self, cycle: int) -> None:
+        """Move the machine to a SYNC, once."""
+        if cycle == self._moved:
+            return
+        self._moved = cycle
+        fault = self._side.rows.servo["fault"]
+        before = fault.tobytes()
+        self._side.advance(cycle)
+        self._raised = fault.tobytes() != before
+
+    def _exchange(self, kind: Order, cycle: int, body: bytes) -> bool:
+        """Pass numbers at a SYNC; as within a stride a new fault needs frames, unless words change anyway."""
+        self._advance(cycle)
+        if self._raised and kind is Order.NUMBERS:
+            return False
+        self._numbers.take_command(body)
+        if kind is Order.WORDS:
+            self._side.exchange(cycle, self._axis)
+        else:
+            exchange_in(self._axis, self._side.rows.servo)
+            exchange_out(self._axis, self._side.rows.servo)
+        return True
 
     def _from_bus(self) -> list[CanFrame]:
         """Take frames until the SYNC that belongs to this cycle. Raises EnvironmentLacks when it does not come."""
@@ -51,13 +93,19 @@ class Drives:
             inbox.append(frame)
         raise EnvironmentLacks("the SYNC of the CNC was lost on the CAN bus")
 
-    def _answer(self, frames: Sequence[CanFrame]) -> None:
-        """Send the frames (a CAN bus carries them itself) and the edges of this cycle."""
-        if self._bus is not None:
+    def _answer(self, cycle: int, frames: Sequence[CanFrame] = (), *, numbers: bytes = b"") -> None:
+        """Send numbers or frames (a CAN bus carries them itself), what is due by time, the edges of this cycle."""
+        side = self._side
+        state, due = Reply(0), b""
+        if self._bus is None:
+            due = telegraph.frames(side.timers(cycle))
+            if side.quiet(cycle + 1) > 0:
+                state = Reply.QUIET
+        else:
             for frame in frames:
                 self._bus.send(frame)
-        edges = telegraph.edges(self._side.take_edges(), self._side.signals)
-        self._pipe.send(telegraph.parts(telegraph.frames(frames), edges))
+        edges = telegraph.edges(side.take_edges(), side.signals)
+        self._pipe.send(telegraph.reply(state, numbers, telegraph.frames(frames), due, edges))
 
 
 def main(pipe: Pipe, arguments: Sequence[str]) -> None:

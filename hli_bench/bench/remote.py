@@ -11,9 +11,11 @@ import numpy as np
 from hli_bench.base.errors import EnvironmentLacks, InputError, NotEmulated
 from hli_bench.bench import telegraph
 from hli_bench.bench.config import MachineConfig
-from hli_bench.bench.telegraph import Order
+from hli_bench.bench.telegraph import Numbers, Order, Reply
+from hli_bench.kernel.cycle import Kernel
 from hli_bench.laws.rows import MachineRows, Rows
 from hli_bench.plant.build import signal_names
+from hli_bench.runtime.engine import FRAMES, WORDS, Engine
 from hli_bench.runtime.machine_side import SYNC
 from hli_bench.shells.can_bus import CanBus
 from hli_bench.shells.processes import Worker
@@ -38,12 +40,35 @@ def can_interface(can: str) -> str:
     raise InputError(f"--can {can}: inproc, socketcan:INTERFACE or socketcand:HOST:PORT expected")
 
 
+class RemoteEngine(Engine):
+    """Steps a machine in other processes: cycle by cycle, by numbers while no frames are needed."""
+
+    def __init__(self, kernel: Kernel, machine: "RemoteMachine") -> None:
+        super().__init__(kernel, machine, machine.pending)
+        self._machine = machine
+
+    def _stretch(self, first: int, limit: int) -> int:
+        """Return that numbers or frames pass in the next cycle; no cycle is strided over."""
+        return FRAMES if self._orders or not self._machine.quiet(first) else WORDS
+
+    def _exchange(self, cycle: int) -> None:
+        """Pass numbers; frames after all when a drive has raised a fault."""
+        if self._new_words:
+            super()._exchange(cycle)
+        elif not self._machine.numbers(Order.NUMBERS, cycle):
+            self._telegrams(cycle)
+
+
 class RemoteMachine:
-    """How the kernel's process reaches the others. Every cycle passes frames; there are no quiet ones."""
+    """How the kernel's process reaches the others: one round trip to each in every cycle.
+
+    The terminals' answer is taken when somebody looks at the images, at the latest in the next cycle.
+    """
 
     def __init__(
-        self, config: MachineConfig, machine: str | Path, settings: Mapping[str, object], can: str
+        self, config: MachineConfig, machine: str | Path, settings: Mapping[str, object], can: str, axis: Rows
     ) -> None:
+        """Start the processes; the numbers of telegrams come from and go into `axis`, the kernel's rows."""
         interface = can_interface(can)
         self._bus = CanBus(interface) if interface else None
         given = [str(machine), json.dumps(dict(settings))]
@@ -52,6 +77,11 @@ class RemoteMachine:
         self._signals = signal_names([axis.name for axis in config.axes])
         self._edges: list[Edge] = []
         self._images: dict[str, bytes] = {}
+        self._asked = False
+        """The terminals owe an answer."""
+        self._quiet = False
+        self._numbers = Numbers(axis)
+        self._due: list[CanFrame] = []
         self.terminal_layouts: Sequence[TerminalLayout] = [
             type_of(settings).layout(settings) for settings in config.terminals
         ]
@@ -70,12 +100,11 @@ class RemoteMachine:
 
     def power_on(self) -> list[CanFrame]:
         """Boot all nodes."""
-        frames = self._answer(self._drives.ask(telegraph.order(Order.POWER_ON, 0)))
-        self._take_images(0)
-        return frames
+        answer = self._drives.ask(telegraph.order(Order.POWER_ON, 0))
+        return self._frames(telegraph.read_reply(answer), 0)
 
     def advance(self, cycle: int) -> None:
-        """Nothing: the machine moves on when it gets its SYNC."""
+        """Nothing: the machine moves on by itself, or when it gets its SYNC."""
 
     def telegrams(self, cycle: int, inbox: Sequence[CanFrame]) -> list[CanFrame]:
         """Send the frames and SYNC, return what the drives sent at it."""
@@ -87,27 +116,41 @@ class RemoteMachine:
             self._bus.clear()
             for frame in (*inbox, SYNC):
                 self._bus.send(frame)
-        frames = self._answer(self._drives.ask(telegraph.order(Order.CYCLE, cycle, body)))
-        self._take_images(cycle)
-        return frames
+        answer = self._drives.ask(telegraph.order(Order.CYCLE, cycle, body))
+        return self._frames(telegraph.read_reply(answer), cycle)
 
     def exchange(self, cycle: int, axis: Rows) -> None:
-        """Never asked: no cycle is quiet."""
+        """Pass the telegrams of a SYNC in which only control words changed, by numbers."""
+        self.numbers(Order.WORDS, cycle)
+
+    def numbers(self, kind: Order, cycle: int) -> bool:
+        """Pass the telegrams of a SYNC by numbers; False: a drive has a fault, frames have to pass."""
+        answer = self._drives.ask(telegraph.order(kind, cycle, self._numbers.command()))
+        state, numbers, _, due, edges = telegraph.read_reply(answer)
+        if state & Reply.FAULT:
+            return False
+        self._numbers.take_actual(numbers)
+        self._take(state, due, edges, cycle)
+        return True
 
     def timers(self, cycle: int) -> list[CanFrame]:
-        """Return nothing: what is due by time comes with the telegrams."""
-        return []
+        """Return what the drives sent by time in this cycle."""
+        if not self._due:
+            return self._due
+        due, self._due = self._due, []
+        return due
 
     def quiet(self, cycle: int) -> int:
-        """No cycle passes without frames."""
-        return 0
+        """Return 1 when the next cycle needs no frames."""
+        return int(self._quiet)
 
     def images(self, cycle: int) -> Mapping[str, bytes]:
         """Return the process images by terminal."""
+        self._take_images()
         return self._images
 
     def image_horizon(self, cycle: int) -> int:
-        """The images are taken in every cycle."""
+        """The images are made in every cycle."""
         return 1
 
     def take_edges(self) -> list[Edge]:
@@ -115,13 +158,23 @@ class RemoteMachine:
         edges, self._edges = self._edges, []
         return edges
 
-    def _answer(self, message: bytes) -> list[CanFrame]:
+    def _frames(self, answer: tuple[Reply, bytes, bytes, bytes, bytes], cycle: int) -> list[CanFrame]:
         """Take the drives' answer; over a bus the frames themselves come from there."""
-        packed, edges = telegraph.read_parts(message)
-        self._new_edges = edges
-        self._edges += telegraph.read_edges(edges, self._signals)
+        state, _, packed, due, edges = answer
+        self._take(state, due, edges, cycle)
         announced = telegraph.read_frames(packed)
         return announced if self._bus is None else self._from_bus(announced)
+
+    def _take(self, state: Reply, due: bytes, edges: bytes, cycle: int) -> None:
+        """Take the rest of the drives' answer; tell the terminals, who work while the kernel does."""
+        self._quiet = bool(state & Reply.QUIET)
+        if due:
+            self._due += telegraph.read_frames(due)
+        if edges:
+            self._edges += telegraph.read_edges(edges, self._signals)
+        self._take_images()
+        self._asked = True
+        _tell(self._terminals, telegraph.order(Order.CYCLE, cycle, edges))
 
     def _from_bus(self, announced: Sequence[CanFrame]) -> list[CanFrame]:
         """Receive what the drives have announced; frames of other nodes on the bus are not for the CNC."""
@@ -138,9 +191,29 @@ class RemoteMachine:
                 found.append(frame)
         return sorted(found, key=lambda frame: frame.cob_id)
 
-    def _take_images(self, cycle: int) -> None:
-        answer = self._terminals.ask(telegraph.order(Order.CYCLE, cycle, self._new_edges))
-        images = telegraph.read_parts(answer)
+    def _take_images(self) -> None:
+        """Take the answer that the terminals owe."""
+        if not self._asked:
+            return
+        self._asked = False
+        images = telegraph.read_parts(_answer_of(self._terminals))
         self._images = {
             layout.name: image for layout, image in zip(self.terminal_layouts, images, strict=True)
         }
+
+
+def _tell(worker: Worker, message: bytes) -> None:
+    """Send a message; the answer is taken later. Raises as `Worker.ask` does."""
+    try:
+        worker.pipe.send(message)
+    except EnvironmentLacks:
+        # It has gone; to ask it once more tells why.
+        worker.ask(message)
+
+
+def _answer_of(worker: Worker) -> bytes:
+    """Take an answer. Raises as `Worker.ask` does."""
+    try:
+        return worker.pipe.receive()
+    except EOFError:
+        return worker.ask(b"")

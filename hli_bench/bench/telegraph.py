@@ -1,11 +1,14 @@
 """What the processes of a bench say to one another in each cycle, as bytes."""
 
 from collections.abc import Iterable, Sequence
-from enum import IntEnum
+from enum import IntEnum, IntFlag
 from struct import Struct
-from typing import Final
+from typing import Any, Final
+
+import numpy as np
 
 from hli_bench.base.time import Ns
+from hli_bench.laws.rows import Rows
 from hli_bench.wire.can import CanFrame
 from hli_bench.wire.signals import Edge
 
@@ -13,7 +16,59 @@ _FRAME: Final = Struct("<HB")
 _EDGE: Final = Struct("<HqB")
 _HEAD: Final = Struct("<BQ")
 _COUNT: Final = Struct("<I")
+_REPLY: Final = Struct("<BHHH")
 _REMOTE: Final = 0x8000
+
+
+class Span:
+    """Neighbouring fields of all rows as bytes: copied at once, which is much faster than field by field."""
+
+    def __init__(self, rows: Rows, first: str, last: str) -> None:
+        fields: Any = rows.dtype.fields
+        begin, end = fields[first][1], fields[last][1] + fields[last][0].itemsize
+        size = rows.dtype.itemsize
+        span = np.dtype(
+            {"names": ["span"], "formats": [f"V{end - begin}"], "offsets": [begin], "itemsize": size}
+        )
+        self._span: Rows = rows.view(span)["span"]
+
+    def read(self) -> bytes:
+        """Return what stands in the rows."""
+        return self._span.tobytes()
+
+    def write(self, data: bytes) -> None:
+        """Put it into the rows."""
+        self._span[...] = np.frombuffer(data, self._span.dtype)
+
+
+class Numbers:
+    """What the telegrams of all axes say, as numbers. On both sides `axis` are rows of the same shape.
+
+    The drives get the status words too: those bits that no law computes stay as the kernel has seen them.
+    """
+
+    def __init__(self, axis: Rows) -> None:
+        self._command = Span(axis, "target", "probe_function")
+        self._received = Span(axis, "received", "received")
+        self._actual = Span(axis, "statusword", "following_error")
+        self._split = len(self._received.read())
+
+    def command(self) -> bytes:
+        """Pack targets, control words, latch control words."""
+        return self._command.read()
+
+    def take_command(self, data: bytes) -> None:
+        """Unpack them."""
+        self._command.write(data)
+
+    def actual(self) -> bytes:
+        """Pack positions, status words, latches and what else the drives say at each SYNC."""
+        return self._received.read() + self._actual.read()
+
+    def take_actual(self, data: bytes) -> None:
+        """Unpack them."""
+        self._received.write(data[: self._split])
+        self._actual.write(data[self._split :])
 
 
 class Order(IntEnum):
@@ -21,6 +76,20 @@ class Order(IntEnum):
 
     POWER_ON = 1
     CYCLE = 2
+    """Frames pass at this SYNC."""
+    WORDS = 3
+    """Only numbers pass, among them control words that have changed."""
+    NUMBERS = 4
+    """Only numbers pass, control words are as they were."""
+
+
+class Reply(IntFlag):
+    """What the drives say of a cycle."""
+
+    QUIET = 1
+    """The next cycle needs no frames from their side."""
+    FAULT = 2
+    """A drive has an error: this SYNC needs frames. The machine has moved, nothing else has happened yet."""
 
 
 def order(kind: Order, cycle: int, body: bytes = b"") -> bytes:
@@ -32,6 +101,28 @@ def read_order(message: bytes) -> tuple[Order, int, bytes]:
     """Return kind, cycle and body of a request."""
     kind, cycle = _HEAD.unpack_from(message)
     return Order(kind), cycle, message[_HEAD.size :]
+
+
+def reply(
+    state: Reply, numbers: bytes = b"", frames: bytes = b"", due: bytes = b"", edges: bytes = b""
+) -> bytes:
+    """Return the drives' answer to an order: numbers or frames of the SYNC, frames due by time, edges."""
+    return _REPLY.pack(state, len(numbers), len(frames), len(due)) + numbers + frames + due + edges
+
+
+def read_reply(message: bytes) -> tuple[Reply, bytes, bytes, bytes, bytes]:
+    """Return state, numbers, frames, frames due by time, edges."""
+    state, numbers, frames, due = _REPLY.unpack_from(message)
+    first = _REPLY.size + numbers
+    second = first + frames
+    third = second + due
+    return (
+        Reply(state),
+        message[_REPLY.size : first],
+        message[first:second],
+        message[second:third],
+        message[third:],
+    )
 
 
 def frames(items: Iterable[CanFrame]) -> bytes:

@@ -117,13 +117,12 @@ def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) ->
     """Build the bench, run the program with its recorders; Ctrl-C gives an aborted result."""
     from hli_bench.bench.bench import Bench
 
-    tap = _Tap()
     with Bench(
         options.machine,
         options.settings,
         plc=options.plc,
         pace=options.pace,
-        on_record=tap,
+        on_record=_print_record,
         **_buses(options),
     ) as bench:
         for note in bench.config.notes:
@@ -131,12 +130,12 @@ def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) ->
                 print(f"warning: {note}", file=sys.stderr)
         report = None if arguments.report is None else _reporter(bench)
         with _recorders(bench, options, arguments):
-            bench.start_up()
-            first = bench.engine.cycle
             try:
                 result = bench.run(program)
             except KeyboardInterrupt:
-                result = tap.aborted(bench, str(program), bench.engine.cycle - first)
+                if bench.interrupted is None:
+                    raise
+                result = bench.interrupted
         if report is not None:
             report(result, arguments.report)
         return result
@@ -148,41 +147,15 @@ def _buses(options: BenchOptions) -> dict[str, Any]:
     return {key: value for key, value in given.items() if value is not None}
 
 
-class _Tap:
-    """Prints what the CNC says as it comes, and keeps it for a run that is interrupted."""
+def _print_record(record: "Emitted") -> None:
+    """Print what the CNC says as it comes."""
+    from hli_bench.bench.result import error_of
+    from hli_bench.kernel.records import CncError, MessageText
 
-    def __init__(self) -> None:
-        self._records: list[Emitted] = []
-
-    def __call__(self, record: "Emitted") -> None:
-        """Take one record."""
-        from hli_bench.bench.result import error_of
-        from hli_bench.kernel.records import CncError, MessageText
-
-        self._records.append(record)
-        if isinstance(record, MessageText):
-            print(record.text, flush=True)
-        elif isinstance(record, CncError):
-            print(error_of(record), file=sys.stderr, flush=True)
-
-    def aborted(self, bench: "Bench", program: str, cycles: int) -> "Result":
-        """Return the result of a program that Ctrl-C has ended."""
-        from hli_bench.bench.result import Collector, Result, measurements
-
-        collector = Collector(bench.kernel.setup.axes)
-        collector.take(self._records)
-        return Result(
-            program=program,
-            status="aborted",
-            messages=collector.messages,
-            errors=collector.errors,
-            variables=bench.kernel.channel.variables(),
-            measurements=measurements(bench.kernel),
-            homing=collector.homing,
-            sim_s=cycles * bench.config.cycle_ns * 1e-9,
-            wall_s=0.0,
-            cycles=cycles,
-        )
+    if isinstance(record, MessageText):
+        print(record.text, flush=True)
+    elif isinstance(record, CncError):
+        print(error_of(record), file=sys.stderr, flush=True)
 
 
 @contextmanager

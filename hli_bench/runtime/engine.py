@@ -7,6 +7,7 @@ Every other cycle hands real frames to the drives and takes real frames from the
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final, Protocol
 
+from hli_bench.base.errors import BenchError
 from hli_bench.base.time import Ns
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.records import Emitted
@@ -45,9 +46,6 @@ class Link(Protocol):
 
     def images(self, cycle: int) -> Mapping[str, bytes]:
         """Return the process images by terminal."""
-
-    def image_horizon(self, cycle: int) -> int:
-        """Return how many cycles may pass before the images have to be looked at."""
 
     def take_edges(self) -> list[Edge]:
         """Return the edges of all signals since the last call."""
@@ -102,7 +100,6 @@ class LocalLink:
         self.quiet = side.quiet
         self.exchange = side.exchange
         self.timers = side.timers
-        self.image_horizon = side.image_horizon
         self.take_edges = side.take_edges
 
     def images(self, cycle: int) -> Mapping[str, bytes]:
@@ -193,11 +190,16 @@ class Engine:
             if where == law.MACHINE:
                 done += 1
         if where == law.ACT:
-            self._timers(cycle)
-            self._think(cycle)
-            self._stride(cycle, 1, law.ACT)
             done += 1
-        self._complete(first, done)
+            self._timers(cycle)
+            try:
+                self._think(cycle)
+            finally:
+                # what the machine has lived through is finished, whatever was wrong with the program
+                self._stride(cycle, 1, law.ACT)
+                self._complete(first, done)
+        else:
+            self._complete(first, done)
 
     def wake(self) -> None:
         """Let the kernel decide in the next cycle: something has been put from outside."""
@@ -233,7 +235,7 @@ class Engine:
             last = self._loud - 1
         if last == first:
             return 1
-        return min(last - self.cycle, LOG_CYCLES, self.link.image_horizon(first))
+        return min(last - self.cycle, LOG_CYCLES)
 
     def _next_tick(self) -> int:
         """Return the next cycle in which a PLC task is due."""
@@ -291,7 +293,13 @@ class Engine:
     def _think(self, cycle: int) -> None:
         """Let the kernel decide between sense and act."""
         self.kernel.begin_cycle(cycle)
-        self.kernel.decide()
+        try:
+            self.kernel.decide()
+        finally:
+            self._hand_out(cycle)
+
+    def _hand_out(self, cycle: int) -> None:
+        """Take what the kernel has to say: frames to be sent, records."""
         self._new_words = self._word_bytes() != self._words
         orders = self.kernel.take_orders()
         self._orders += orders
@@ -322,11 +330,21 @@ class Engine:
         io = self.link.images(cycle)
         dc_ns = self.dc_ns
         image = self.kernel.image.data
-        for plc, commands in [(plc, plc.tick(cycle, dc_ns, image, io)) for plc in due]:
+        for plc, commands in [(plc, self._run_plc(plc, cycle, dc_ns, image, io)) for plc in due]:
             if commands is None:
                 self.lose(plc.name)
             elif commands.writes:
                 self.apply(commands)
+
+    def _run_plc(
+        self, plc: PlcPort, cycle: int, dc_ns: Ns, image: bytearray, io: Mapping[str, bytes]
+    ) -> Commands | None:
+        """Run one task; one whose script fails takes part no more."""
+        try:
+            return plc.tick(cycle, dc_ns, image, io)
+        except BenchError:
+            self.lose(plc.name)
+            raise
 
     def lose(self, name: str) -> None:
         """A PLC has gone: its units fall back, the CNC reacts as to a PLC stop."""

@@ -135,9 +135,7 @@ class MachineSide:
                 frames += drive.on_frame(frame, now)
         for drive in self.drives:
             frames += drive.tick(now)
-        self._due = NOT_KNOWN
-        """Next cycle in which a drive sends by time or a fault begins: the last one that is quiet."""
-        self._ticked = NOT_KNOWN
+        self._due, self._ticked = NOT_KNOWN, cycle
         return sorted(frames, key=lambda frame: frame.cob_id)
 
     def exchange(self, cycle: int, axis: Rows) -> None:
@@ -151,8 +149,15 @@ class MachineSide:
             )
 
     def timers(self, cycle: int) -> list[CanFrame]:
-        """Return what the drives send by time in a cycle without frames (heartbeats); begin faults that are due."""
-        if cycle < self._due or cycle == self._ticked:
+        """Return what the drives send by time in a cycle without frames (heartbeats).
+
+        Faults that are due begin, terminals whose period is longer than a cycle refresh their image.
+        """
+        if cycle < self._due:
+            return []
+        for terminal in self._slow_terminals:
+            terminal.step(Ns(cycle * self.cycle_ns))
+        if cycle == self._ticked:
             return []
         self._due, self._ticked = NOT_KNOWN, cycle
         now = Ns(cycle * self.cycle_ns)
@@ -169,6 +174,7 @@ class MachineSide:
             now = Ns((cycle - 1) * self.cycle_ns)
             dues = [at for drive in self.drives if (at := drive.next_due(now)) is not None]
             dues += [fault.at_ns for fault in self._forced[:1]]
+            dues += [terminal.due_ns for terminal in self._slow_terminals]
             self._due = max(cycle, min((-(-at // self.cycle_ns) for at in dues), default=cycle + FAR))
         return self._due - cycle + 1
 
@@ -183,11 +189,6 @@ class MachineSide:
         """Return the process images at the SYNC of `cycle`."""
         now = Ns(cycle * self.cycle_ns)
         return [terminal.step(now) for terminal in self.terminals]
-
-    def image_horizon(self, cycle: int) -> int:
-        """Return how many cycles from `cycle` on may pass before a terminal with a longer period refreshes."""
-        slow = [terminal.due_ns for terminal in self._slow_terminals]
-        return min((-(-due // self.cycle_ns) - cycle + 1 for due in slow), default=FAR)
 
     def take_edges(self) -> list[Edge]:
         """Return the edges of all signals since the last call, in order."""

@@ -1,0 +1,61 @@
+"""What a bench does when something goes wrong around a program."""
+
+import pytest
+
+from hli_bench import Bench
+from hli_bench.base.errors import InputError, NotEmulated
+
+
+def test_a_program_that_breaks_off_leaves_no_gap_in_time() -> None:
+    with Bench("demo", plc=[]) as bench:
+        with pytest.raises(NotEmulated):
+            bench.run('%a\nN10 #MSG["old"]\nN20 G01 X1 F6000\nN30 G04 0.05\nN40 G02 X1\nM30\n')
+        assert bench.engine.cycle > 100
+        assert bench.position_mm("X") == pytest.approx(1.0, abs=0.01)
+        result = bench.run("%b\nN10 G01 X0 F6000\nM30\n")
+        assert result.completed
+        assert not result.messages
+
+
+def test_a_limit_of_machine_time_aborts_a_program() -> None:
+    with Bench("demo", plc=[]) as bench:
+        result = bench.run("%a\nN10 G01 X100 F60\nM30\n", limit_s=1.0)
+        assert (result.status, result.cycles) == ("aborted", 1000)
+        assert bench.run("%b\nN10 G01 X0 F600\nM30\n").completed
+
+
+def test_a_bench_whose_plc_cannot_be_loaded_stays_refused(tmp_path) -> None:
+    with Bench("demo", plc=[tmp_path / "none.py"]) as bench:
+        with pytest.raises(InputError, match=r"none\.py"):
+            bench.run("%a\nM30\n")
+        with pytest.raises(Exception, match="failed to start"):
+            bench.run("%a\nM30\n")
+
+
+def test_a_script_that_fails_takes_part_no_more(tmp_path) -> None:
+    script = tmp_path / "broken.py"
+    script.write_text(
+        "from hli_bench.plc import Plc\n\n\nclass Broken(Plc):\n    period_us = 1000\n    count = 0\n\n"
+        "    def cycle(self, hli, io):\n        self.count += 1\n        if self.count > 20:\n            1 / 0\n"
+    )
+    with Bench("demo", plc=[script]) as bench:
+        with pytest.raises(InputError, match=r"broken\.py"):
+            bench.run("%a\nN10 G04 1\nM30\n")
+        assert not bench.engine.plcs
+        assert bench.run("%b\nN10 G04 0.1\nM30\n").completed
+
+
+def test_a_slow_terminal_does_not_make_a_bench_without_plc_pass_frames() -> None:
+    with Bench("demo", {"terminal.cams.period_us": 4000}, plc=[]) as bench:
+        bench.start_up()
+        passed = 0
+        telegrams = bench.engine.link.telegrams
+
+        def counted(cycle, inbox):
+            nonlocal passed
+            passed += 1
+            return telegrams(cycle, inbox)
+
+        bench.engine.link.telegrams = counted
+        assert bench.run("%a\nN10 G01 X10 F600\nM30\n").completed
+        assert passed < 5

@@ -143,7 +143,7 @@ class Dask:
             target: Any = self._address
             if target is None:
                 target = closing.enter_context(
-                    dask.LocalCluster(n_workers=self._workers, threads_per_worker=1, dashboard_address=None)
+                    dask.LocalCluster(n_workers=self._workers, threads_per_worker=1, dashboard_address=":0")
                 )
             try:
                 client = closing.enter_context(dask.Client(target, timeout=END_S))

@@ -28,7 +28,7 @@ Evaluate = Callable[[Ended], Any]
 """Gives the value of a part of an expression, or raises what `ABSENT` names."""
 Metric = Callable[[Result, Mapping[str, Any]], float | None]
 
-OF_THE_CLOCK: Final = frozenset({"wall_s", "late_cycles"})
+OF_THE_CLOCK: Final = frozenset({"wall_s", "late_cycles", "lateness"})
 """Parts of a result that differ from one execution to the next, so that no metric may take them."""
 ROOTS: Final[Mapping[str, Any]] = {
     item.name: item.type for item in fields(Result) if item.name not in OF_THE_CLOCK

@@ -1,5 +1,6 @@
 """A CAN interface of this computer, through python-can."""
 
+import logging
 import time
 from typing import Any, Final, Self
 
@@ -7,6 +8,9 @@ import can
 
 from hli_bench.base.errors import EnvironmentLacks
 from hli_bench.wire.can import CanFrame
+
+# python-can logs what it raises as well; for this program the exception is enough.
+logging.getLogger("can").addHandler(logging.NullHandler())
 
 ANSWER_S: Final = 2.0
 """Longest wait for a frame that must come."""

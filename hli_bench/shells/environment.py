@@ -150,14 +150,16 @@ def loopback_port(port: int, purpose: str) -> Finding:
 
 
 def compiler_cache(environment: Mapping[str, str] | None = None) -> Finding:
-    """Say whether the compiled laws can be kept between runs."""
+    """Say where the compiled laws are kept between runs: numba takes the first place that can be written."""
     environment = os.environ if environment is None else environment
     chosen = environment.get("NUMBA_CACHE_DIR")
-    directory = Path(chosen) if chosen else _LAWS / "__pycache__"
+    users = environment.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
+    places = [Path(chosen)] if chosen else [_LAWS / "__pycache__", Path(users) / "numba"]
+    found = next((place for place in places if _can_be_written(place)), None)
     return Finding(
         "compiler-cache",
-        _can_be_written(directory),
-        str(directory),
+        found is not None,
+        str(found or places[0]),
         "Set NUMBA_CACHE_DIR to a directory you may write, or every start compiles the laws again.",
     )
 

@@ -116,12 +116,14 @@ class Flush:
 class MachineState:
     """The answer to a `Flush`: per axis, mm or degrees in ACS.
 
-    `measured` holds the last latched position of each axis that ever delivered one; `latched` tells
-    for the axes of the last measuring run whether the event came before the target (V.A.MERF).
+    `measured` holds the last latched position of each axis that ever delivered one, `delivered` how many it has
+    delivered in this program; `latched` tells for the axes of the last measuring run whether the event came
+    before the target (V.A.MERF).
     """
 
     command: Mapping[AxisIndex, float]
     actual: Mapping[AxisIndex, float]
     measured: Mapping[AxisIndex, float]
+    delivered: Mapping[AxisIndex, int]
     latched: Mapping[AxisIndex, bool]
     referenced: Mapping[AxisIndex, bool]

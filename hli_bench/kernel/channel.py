@@ -1,6 +1,6 @@
 """The NC channel: takes the decoder's items in order, lets motion run ahead, stops at what must wait for it."""
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Generator, Iterable, Mapping
 
 from hli_bench.base.ids import AxisIndex
@@ -62,6 +62,7 @@ class Channel:
         self._probes: dict[AxisIndex, Probe] = {}
         self._measured: dict[AxisIndex, float] = {}
         self._latched: dict[AxisIndex, bool] = {}
+        self._delivered: Counter[AxisIndex] = Counter()
         self.measured: list[tuple[MeasuredValue, float]] = []
         """Every value this program has measured, with its V.A.MEAS.PCS.VALUE in mm."""
         self._source = Source("", 0)
@@ -85,6 +86,7 @@ class Channel:
         self._segment_source.clear()
         self._measured.clear()
         self._latched.clear()
+        self._delivered.clear()
         self.measured.clear()
         core = self._core
         self._probes = {axis.index: measurement.default_probe(core, axis.index) for axis in core.setup.axes}
@@ -299,6 +301,7 @@ class Channel:
             command={axis.index: mm(float(core.row(axis.index)["command"])) for axis in core.setup.axes},
             actual={axis.index: mm(round(float(core.row(axis.index)["actual"]))) for axis in core.setup.axes},
             measured=dict(self._measured),
+            delivered=dict(self._delivered),
             latched=dict(self._latched),
             referenced={axis.index: core.referenced[axis.index] for axis in core.setup.axes},
         )
@@ -333,6 +336,7 @@ class Channel:
         for axis in run.block.axes:
             self._latched[axis] = run.before_target.get(axis, False)
         self._measured |= {axis: mm(value.acs_tenth_um) for axis, value in run.values.items()}
+        self._delivered.update(run.values.keys())
         variables = self.variables()
         for axis, value in run.values.items():
             pcs = variables[f"V.A.MEAS.PCS.VALUE.{self._core.axis(axis).name}"]

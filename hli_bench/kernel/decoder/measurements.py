@@ -18,13 +18,18 @@ class Run:
 
 
 class Measurements:
-    """Last measuring run of each axis, and the machine's values seen in its light."""
+    """The measuring run that each axis has its value from, and the machine's values seen in its light.
 
-    __slots__ = ("_coordinates", "_latched", "_runs", "state")
+    A run in which an axis delivers nothing leaves the axis what it had: value, system and target.
+    """
+
+    __slots__ = ("_coordinates", "_delivered", "_latched", "_open", "_runs", "state")
 
     def __init__(self, coordinates: Coordinates) -> None:
         self._coordinates = coordinates
         self._runs: dict[AxisIndex, Run] = {}
+        self._open: dict[AxisIndex, Run] = {}
+        self._delivered: dict[AxisIndex, int] = {}
         self._latched: dict[AxisIndex, bool] = {}
         self.state: MachineState | None = None
 
@@ -32,16 +37,21 @@ class Measurements:
         """Note what a run over `axes` is measured against; the other axes keep their earlier run."""
         where = self._coordinates
         for axis in axes:
-            self._runs[axis] = Run(where.frame, where.absolute[axis], where.applied[axis])
+            self._open[axis] = Run(where.frame, where.absolute[axis], where.applied[axis])
 
     def learn(self, state: MachineState) -> None:
         """Take the machine's answer; axes that were not in the last run keep V.A.MERF."""
         self.state = state
         self._latched.update(state.latched)
+        for axis, run in self._open.items():
+            if state.delivered.get(axis, 0) > self._delivered.get(axis, 0):
+                self._runs[axis] = run
+        self._open.clear()
+        self._delivered.update(state.delivered)
 
     def has_run(self, axis: AxisIndex) -> bool:
         """Tell whether this program has started a measuring run of the axis."""
-        return axis in self._runs
+        return axis in self._latched
 
     def has_value(self, axis: AxisIndex) -> bool:
         """Tell whether this program has measured the axis."""

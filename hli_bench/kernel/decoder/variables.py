@@ -191,7 +191,6 @@ class Variables:
             raise scanner.not_emulated(f"V.A.{name}: this variable has no value here yet", start)
         if name not in _READS or not self._context.path_axis(index):
             raise self._stop(scanner, errors.UNKNOWN_VARIABLE, f"V.A.{name}")
-        self._need_value(scanner, name, index)
         return self._note(name, index)
 
     def _note(self, name: str, axis: AxisIndex) -> float:
@@ -200,13 +199,11 @@ class Variables:
         self._read[f"V.A.{name}.{self._context.axes[axis].name}"] = value
         return value
 
-    def _need_value(self, scanner: Scanner, variable: str, axis: AxisIndex) -> None:
-        if variable in _NEED_VALUE and not self._context.measurements.has_value(axis):
-            name = self._context.axes[axis].name
-            raise CncStop(errors.OFFSET_NOT_REQUESTED, scanner.block.source, name, axis=name)
-
     def _measured(self, variable: str, axis: AxisIndex) -> float:
+        """Return a measured value; 0 for an axis that has none yet (decided here: V.A.MERF tells)."""
         values = self._context.measurements
+        if not values.has_value(axis):
+            return 0.0
         match variable:
             case "MESS":
                 return values.with_offsets(axis)

@@ -1,6 +1,7 @@
 """Runs the decoder with a scripted machine."""
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 
 import pytest
 
@@ -23,6 +24,7 @@ def _state(
     *,
     actual: Sequence[float] | None = None,
     measured: dict[str, float] | None = None,
+    delivered: dict[str, int] | None = None,
     latched: dict[str, bool] | None = None,
     referenced: dict[str, bool] | None = None,
 ) -> MachineState:
@@ -31,6 +33,7 @@ def _state(
         command={AxisIndex(i): value for i, value in enumerate(command)},
         actual={AxisIndex(i): value for i, value in enumerate(actual or command)},
         measured={NAMES[name]: value for name, value in (measured or {}).items()},
+        delivered={NAMES[name]: value for name, value in (delivered or {}).items()},
         latched={NAMES[name]: value for name, value in (latched or {}).items()},
         referenced={NAMES[name]: value for name, value in (referenced or {}).items()},
     )
@@ -49,6 +52,7 @@ def _decode(
     script = list(answers) or [_state()]
     items: list[Item] = []
     answer: MachineState | None = None
+    flushes = 0
     while True:
         try:
             item = blocks.send(answer)
@@ -57,7 +61,10 @@ def _decode(
         items.append(item)
         answer = None
         if isinstance(item, Flush):
+            flushes += 1
             answer = script.pop(0) if len(script) > 1 else script[0]
+            # every value that an answer holds is a new one, unless the answer says otherwise
+            answer = replace(answer, delivered=answer.delivered or dict.fromkeys(answer.measured, flushes))
 
 
 def _texts(items: Iterable[Item]) -> list[str]:

@@ -38,7 +38,20 @@ def test_g101_and_g102_do_not_stay_in_force(decode: Any, hit: Any) -> None:
 def test_g101_without_measured_value_is_an_error(decode: Any, hit: Any) -> None:
     assert decode("G101 Z1\nM30", [hit])[-1].number == 20024
     assert decode(run("Z20") + "G101 X1\nM30", [hit])[-1].number == 20024
-    assert decode(run("Z20") + "P1 = V.A.MESS.X\nM30", [hit])[-1].number == 20024
+
+
+def test_reading_a_value_that_was_never_measured_gives_zero(decode: Any, texts: Any, hit: Any) -> None:
+    items = decode(run("Z20") + '#MSG["%f %d", V.A.MESS.X, V.A.MERF.X]\nM30', [hit])
+    assert texts(items) == ["0.000000 0"]
+
+
+def test_a_run_without_a_value_leaves_the_axis_what_it_had(decode: Any, texts: Any, state: Any) -> None:
+    """Value, target and offset stay those of the run that delivered them."""
+    first = state((0.0, 0.0, 99.0, 0.0), measured={"Z": 100.0}, delivered={"Z": 1}, latched={"Z": True})
+    second = state((0.0, 0.0, 150.0, 0.0), measured={"Z": 100.0}, delivered={"Z": 1}, latched={"Z": False})
+    shown = '#MSG["%f %f %d", V.A.MESS.Z, V.A.MOFFS.Z, V.A.MERF.Z]\n'
+    items = decode(run("Z20") + shown + run("Z150") + shown + "M30", [first, second])
+    assert texts(items) == ["100.000000 80.000000 1", "100.000000 80.000000 0"]
 
 
 @pytest.mark.req("M-065")

@@ -37,7 +37,9 @@ def test_lines_are_kept_for_a_loop_only() -> None:
     lines = ["$FOR P1 = 1, 3\n", "G91 G00 X1\n", "$ENDFOR\n", *["G90 X0\n", "X1\n"] * 10, "M30\n"]
     decoder = Decoder(lines, "loop.nc", AXES, DecoderDefaults())
     blocks = decoder.blocks()
-    answer = MachineState(command={AxisIndex(0): 5.0}, actual={}, measured={}, latched={}, referenced={})
+    answer = MachineState(
+        command={AxisIndex(0): 5.0}, actual={}, measured={}, delivered={}, latched={}, referenced={}
+    )
     first = next(blocks)
     assert isinstance(first, Flush)
     assert blocks.send(answer).target == {0: 6.0}

@@ -36,7 +36,7 @@ def test_a_run_leaves_its_measured_values_even_unread(state: Any) -> None:
     program = ["G92 Z10", "G01 Z200 F1", "G100 Z20", "V.P.A = 1", "P7 = 8", "P8 = V.G.MEAS_TYPE", "M30"]
     decoder = Decoder(program, "result.nc", axes, DecoderDefaults())
     assert len(list(decoder.blocks())) == 3
-    assert decoder.variables(state(measured={"Z": 100.0}, latched={"Z": True})) == {
+    assert decoder.variables(state(measured={"Z": 100.0}, delivered={"Z": 1}, latched={"Z": True})) == {
         "P7": 8.0,
         "P8": 1.0,
         "V.A.MEAS.ACS.VALUE.Z": 100.0,

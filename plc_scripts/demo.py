@@ -8,7 +8,7 @@ from hli_bench.plc import Plc
 
 
 class Demo(Plc):
-    """Releases the feed of all axes and forwards probe level, probe time and cams."""
+    """Releases the feed of all axes and forwards probe level, time of its last edge, and cams."""
 
     period_us = 1000
     axes = (1, 2, 3, 4, 5, 6)
@@ -29,7 +29,8 @@ class Demo(Plc):
 
     def cycle(self, hli, io):
         probe = io.probe.ch2
-        level, edge_ns = probe.input, probe.latch_pos
+        level = probe.input
+        edge_ns = probe.latch_pos if level else probe.latch_neg
         for number, switch in self.switch.items():
             axis = hli.ax[number].lr_mc_control
             axis.probing_signal.command_w = level

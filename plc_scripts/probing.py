@@ -1,4 +1,4 @@
-"""Forwards a touch probe to the measurement axes: its level and the time of its last rising edge.
+"""Forwards a touch probe to the measurement axes: its level and the time of its last edge.
 
 The probe is wired to channel 2 of the EL1252 called `probe` (measurement manual 7.4). The level serves the
 signal source PLC, level and time together serve PLC_TIMESTAMP: both control units must be enabled.
@@ -24,7 +24,8 @@ class Probing(Plc):
 
     def cycle(self, hli, io):
         probe = io.probe.ch2
-        level, edge_ns = probe.input, probe.latch_pos
+        level = probe.input
+        edge_ns = probe.latch_pos if level else probe.latch_neg
         for number in self.axes:
             axis = hli.ax[number].lr_mc_control
             axis.probing_signal.command_w = level

@@ -8,6 +8,7 @@ from hli_bench.base.units import mm
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.records import CncError, Emitted, Homed, MeasuredValue, MessageText
 from hli_bench.kernel.setup import AxisSetup
+from hli_bench.shells.pacing import Lateness
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +72,13 @@ class Result:
     sim_s: float
     wall_s: float
     cycles: int
-    late_cycles: int = 0
+    lateness: Lateness | None = None
+    """How a bench in real pace kept its cycle meanwhile, None in free pace."""
+
+    @property
+    def late_cycles(self) -> int:
+        """Cycles that began a cycle or more behind their time."""
+        return self.lateness.late if self.lateness else 0
 
     @property
     def completed(self) -> bool:
@@ -79,8 +86,10 @@ class Result:
         return self.status == "completed"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what `--result` writes."""
-        return asdict(self)
+        """Return what `--result` writes; of a bench in real pace also how it kept its cycle."""
+        found = asdict(self)
+        del found["lateness"]
+        return found | (self.lateness.figures() if self.lateness else {})
 
 
 class Collector:
@@ -99,7 +108,7 @@ class Collector:
         for record in records:
             match record:
                 case MessageText():
-                    self.messages.append(Message(record.source.number, record.text))
+                    self.messages.append(Message(record.source.name, record.text))
                 case CncError():
                     self.errors.append(error_of(record))
                 case Homed():
@@ -115,7 +124,7 @@ def error_of(record: CncError) -> Error:
         record.number,
         str(record.severity),
         record.axis,
-        record.source.number,
+        record.source.name,
         record.text,
         dict(record.values),
     )
@@ -126,7 +135,7 @@ def measurements(kernel: Kernel) -> list[Measurement]:
     return [
         Measurement(
             axis=kernel.setup.axes[value.axis].name,
-            block=value.source.number,
+            block=value.source.name,
             source=value.origin,
             acs_mm=mm(value.acs_tenth_um),
             pcs_mm=pcs_mm,

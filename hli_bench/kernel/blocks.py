@@ -13,6 +13,11 @@ class Source:
     number: str
     line: int
 
+    @property
+    def name(self) -> str:
+        """What people look for: the N number, or the line of a block without one."""
+        return self.number or (f"line {self.line}" if self.line else "")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Line:

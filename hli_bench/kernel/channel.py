@@ -165,7 +165,8 @@ class Channel:
                 self._core.emitted.append(MessageText(source=item.source, text=item.text))
             case Text():
                 self._texts.append((int(self._core.rows.path[0]["tail"]), item))
-                self._hand_out_texts()
+                if len(self._texts) == 1:
+                    self._hand_out_texts()
             case MeasureSettings():
                 self._set_measuring(item)
             case DriveWrite(synchronous=False):

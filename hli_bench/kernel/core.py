@@ -9,7 +9,7 @@ from hli_bench.kernel.path_interpolator import Path
 from hli_bench.kernel.path_preparation.preparation import Preparation
 from hli_bench.kernel.records import CncError, Emitted
 from hli_bench.kernel.setup import AxisSetup, KernelSetup
-from hli_bench.kernel.watches import ROOM, Watches
+from hli_bench.kernel.watches import Watches, room
 from hli_bench.laws.rows import JOG, KernelRows, Rows
 from hli_bench.manual.errors import ErrorSheet, Severity
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
@@ -40,7 +40,7 @@ class Core:
     @classmethod
     def build(cls, setup: KernelSetup, image: Image, units: ControlUnits) -> "Core":
         """Return the core of a kernel that has not run a cycle yet."""
-        rows = KernelRows.allocate(len(setup.axes), ROOM)
+        rows = KernelRows.allocate(len(setup.axes), room(len(setup.axes)))
         for axis in setup.axes:
             rows.axis[axis.index]["increments_per_unit"] = axis.increments_per_unit
         return cls(

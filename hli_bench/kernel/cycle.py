@@ -20,7 +20,6 @@ from hli_bench.kernel.setup import KernelSetup
 from hli_bench.laws.publish import publish_positions
 from hli_bench.laws.rows import FOLLOW, KernelRows
 from hli_bench.manual.errors import hli as hli_errors
-from hli_bench.protocols.canopen.sync import sync_frame
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
 from hli_bench.protocols.hli.image import Image
 from hli_bench.protocols.hli.layout import layout_of
@@ -120,10 +119,6 @@ class Kernel:
             for frame in command_frames(axis.node, self.core.rows.axis[axis.index])
         ]
         return sorted(frames, key=lambda frame: frame.cob_id)
-
-    def sync(self) -> CanFrame:
-        """Return the SYNC frame."""
-        return sync_frame()
 
     def take_emitted(self) -> list[Emitted]:
         """Return what was emitted since the last call."""

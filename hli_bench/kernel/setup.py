@@ -11,7 +11,7 @@ from hli_bench.manual.channel import ChannelParams
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisSetup:
-    """One axis: `kind` is T (linear), R (rotary) or S (spindle); `start_tenth_um` where an absolute axis stands."""
+    """One axis: `kind` is T (linear), R (rotary) or S (spindle), `index` its row, `node` its drive."""
 
     index: AxisIndex
     number: AxisNumber

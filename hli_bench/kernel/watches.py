@@ -3,10 +3,18 @@
 from dataclasses import dataclass
 from typing import Final
 
+from hli_bench.base.errors import BenchError
 from hli_bench.laws import rows as law
 
 ROOM: Final = 64
-"""Conditions that can be watched at the same time."""
+"""Conditions that can be watched at the same time, beside those of the axes (decided here)."""
+ROOM_OF_AXIS: Final = 8
+"""Conditions of one axis: monitoring, start-up, homing, measuring (decided here)."""
+
+
+def room(axes: int) -> int:
+    """Return how many conditions can be watched on a machine with `axes` axes."""
+    return ROOM + ROOM_OF_AXIS * axes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,17 +93,17 @@ def cycle_reached(cycle: int) -> Condition:
 
 
 class Watches:
-    """Hands out watch rows; a handle is the number of its row."""
+    """Hands out watch rows, the lowest first; a handle is the number of its row. Rows behind the last cost nothing."""
 
-    __slots__ = ("_row",)
+    __slots__ = ("_row", "_used")
 
     def __init__(self, watch: law.Rows) -> None:
         self._row = watch
+        self._used = 0
 
     def watch(self, condition: Condition) -> int:
-        """Put a condition under watch and return its handle."""
-        free = (self._row["kind"] == law.W_NONE).nonzero()[0]
-        handle = int(free[0])
+        """Put a condition under watch and return its handle. Raises BenchError when no row is left."""
+        handle = self._free()
         row = self._row[handle]
         row["axis"] = condition.axis
         row["limit"] = condition.limit
@@ -114,10 +122,19 @@ class Watches:
 
     def forget(self, handle: int) -> None:
         """Take a condition back."""
-        self._row[handle]["kind"] = law.W_NONE
+        kind = self._row["kind"]
+        kind[handle] = law.W_FREE if handle < self._used else law.W_NONE
         self._row[handle]["fired"] = 0
+        while self._used and kind[self._used - 1] == law.W_FREE:
+            self._used -= 1
+            kind[self._used] = law.W_NONE
 
-    def forget_all(self) -> None:
-        """Take every condition back."""
-        self._row["kind"] = law.W_NONE
-        self._row["fired"] = 0
+    def _free(self) -> int:
+        """Return the lowest row that is not in use."""
+        gaps = (self._row["kind"][: self._used] == law.W_FREE).nonzero()[0]
+        if len(gaps):
+            return int(gaps[0])
+        if self._used == len(self._row):
+            raise BenchError(f"more than {len(self._row)} conditions to be watched at the same time")
+        self._used += 1
+        return self._used - 1

@@ -41,6 +41,7 @@ ARMING_CYCLES: Final = 500
 ARRIVAL_CYCLES: Final = 20
 """Cycles behind the end of the interpolation in which an event still counts (decided here, decision 0012)."""
 MAIN_AXES: Final = 3
+MAIN_AXIS_NAMES: Final = ("X", "Y", "Z")
 FEED_FROM_AXIS: Final = 2
 MAIN_AXES_ONLY: Final = 4
 STROKE_TYPES: Final = (FEED_FROM_AXIS, MAIN_AXES_ONLY)
@@ -97,6 +98,15 @@ def refused(core: Core, block: MeasuringRun) -> bool:
             core.report(errors.NOT_A_MEASUREMENT_AXIS, block.source, axis.number, axis=index)
             return True
         if block.measuring_type == FIXED_STOP_TYPE and _stop_refused(core, block, index):
+            return True
+        if block.measuring_type in STROKE_TYPES and axis.params.kenngr.hub_messtaster == 0:
+            core.report(preparation_errors.PROBE_STROKE_ZERO, block.source, axis.number, axis=index)
+            return True
+        if block.measuring_type == MAIN_AXES_ONLY and axis.name not in MAIN_AXIS_NAMES:
+            kind = block.measuring_type
+            core.report(
+                errors.TOO_MANY_MEASURING_AXES, block.source, len(block.target), MAIN_AXES, kind, axis=index
+            )
             return True
     most = MOST_AXES.get(block.measuring_type, len(core.setup.axes))
     if len(block.target) > most:
@@ -250,7 +260,7 @@ def _missed(run: Run) -> None:
         if run.fixed_stop:
             if not channel.meas_fixed_stop_no_error:
                 core.report(errors.FIXED_STOP_NOT_FOUND, run.block.source, number, axis=axis)
-        elif run.error_no_signal or run.block.measuring_type == 2:
+        elif run.error_no_signal or run.block.measuring_type == FEED_FROM_AXIS:
             core.report(errors.NO_MEASUREMENT, run.block.source, number, axis=axis)
 
 

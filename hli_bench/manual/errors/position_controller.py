@@ -132,7 +132,7 @@ LEADSCREW_NOT_SELECTED: Final[ErrorSheet] = warning(
 ZERO_PULSE_PATH: Final[ErrorSheet] = axis_error(
     "zero_pulse_path",
     70_380,
-    "axis {0}: no zero pulse within the path of P-AXIS-00404",
+    "axis {0}: no zero pulse while the cam was operated, or within the path of P-AXIS-00404",
     "logical axis number",
     "path [0.1 um]",
 )
@@ -358,7 +358,7 @@ RETRACTION_TOO_SMALL: Final[ErrorSheet] = axis_error(
 TIMESTAMP_NOT_AVAILABLE: Final[ErrorSheet] = axis_error(
     "timestamp_not_available",
     70_689,
-    "axis {0}: measuring with timestamps is not possible in this configuration",
+    "axis {0}: no position to be had for the timestamp: its unit is not enabled, or its time is not in the history",
     "logical axis number",
     source=diagnosis(70689),
     remedy=3,

@@ -13,6 +13,7 @@ from hli_bench.kernel.position_controller.homing import (
     jog,
     reference,
 )
+from hli_bench.kernel.position_controller.latches import unwrapped
 from hli_bench.kernel.sequence import END, Phase, Table, Then, Until
 from hli_bench.kernel.watches import jog_stopped, moved, probe_status
 from hli_bench.manual.axis.fallbacks import effective_input
@@ -104,9 +105,7 @@ def _latched(run: Run) -> Until:
 def _reference_latched(run: Run) -> None:
     """The zero pulse's count becomes the reference position, whatever the axis did since."""
     row = run.core.row(run.axis)
-    raw = int(row["latch"][0])
-    feedback = int(row["feedback"])
-    reference(run, feedback + ((raw - feedback + 0x80000000) % 0x100000000 - 0x80000000))
+    reference(run, unwrapped(row, int(row["latch"][0])))
     row["probe_function"] = 0
 
 

@@ -6,6 +6,7 @@ Source: measurement manual 6.4; bits as in CiA 402.
 from hli_bench.base.ids import AxisIndex
 from hli_bench.base.time import Ns
 from hli_bench.kernel.core import Core
+from hli_bench.kernel.position_controller.latches import unwrapped
 from hli_bench.kernel.sequence import Until
 from hli_bench.kernel.watches import Condition, probe_status
 from hli_bench.manual.axis.words import Edge, TriggerSource
@@ -45,16 +46,10 @@ def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
 def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:
     """The latched position; the telegram carries no time, so it is that of the cycle that brought the value."""
     row = core.row(axis)
-    raw = int(row["latch"][SLOT[edge]])
-    increments = int(row["feedback"]) + _wrapped(raw - int(row["feedback"]))
+    increments = unwrapped(row, int(row["latch"][SLOT[edge]]))
     return float((increments - row["reference"]) / row["increments_per_unit"]), core.dc_now
 
 
 def disarm(core: Core, axis: AxisIndex) -> None:
     """Clear the latch control word."""
     core.row(axis)["probe_function"] = 0
-
-
-def _wrapped(difference: int) -> int:
-    """Return a difference of two 32-bit counts the short way round."""
-    return (difference + 0x80000000) % 0x100000000 - 0x80000000

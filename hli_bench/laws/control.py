@@ -15,6 +15,7 @@ from hli_bench.laws.rows import (
     W_CYCLE,
     W_DIGITAL_INPUT,
     W_FIXED_STOP,
+    W_FREE,
     W_JOG_STOPPED,
     W_LAG_OVER,
     W_LAG_WITHIN,
@@ -112,6 +113,8 @@ def ask_watches(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) 
     for w in range(watch.shape[0]):
         row = watch[w]
         if row["kind"] == W_NONE:
+            break
+        if row["kind"] == W_FREE:
             continue
         if not holds(axis, path, watch, w, cycle):
             row["count"] = 0

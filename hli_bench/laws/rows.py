@@ -37,7 +37,7 @@ IDLE: Final = 0
 RUN: Final = 1
 BRAKE: Final = 2
 
-# Watch kinds (WATCH["kind"])
+# Watch kinds (WATCH["kind"]); no row behind a W_NONE is in use, a W_FREE is a gap
 W_NONE: Final = 0
 W_PATH_DONE: Final = 1
 W_SEGMENT: Final = 2
@@ -51,6 +51,7 @@ W_DIGITAL_INPUT: Final = 9
 W_CYCLE: Final = 10
 W_STANDSTILL_LAG_OVER: Final = 11
 W_MOVED: Final = 12
+W_FREE: Final = 13
 
 AXIS: Final = np.dtype(
     [

@@ -1,10 +1,14 @@
 """Path motion: junctions, override, feedhold, monitoring, history, software limits."""
 
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import hli_bench
+from hli_bench import Bench
 from hli_bench.kernel.position_controller import history
 
 X, Y, Z = 0, 1, 2
@@ -364,3 +368,33 @@ def test_override_is_limited_by_p_chan_00056(make, recorder, acts, largest, fact
     bench.run("%p\nN10 G01 X20 F3000\nN20 M30\n")
 
     assert path_speed(recorder).max() == pytest.approx(50.0 * factor, abs=1e-6)
+
+
+def test_any_number_of_texts_may_wait_for_their_place(make, recorder):
+    """Texts behind a motion wait in line: only the first of them needs to be watched."""
+    bench = make(recorder=recorder)
+    texts = "".join(f'#MSG SYN["{n}"]\n' for n in range(100))
+    result = bench.run(f"%p\nN10 G01 X10 F6000\nN15 G01 X20\n{texts}N20 G01 X30\nN30 M30\n")
+    at = [cycle for cycle, record in recorder.records]
+
+    assert result.completed, result.errors
+    assert [one.text for one in result.messages] == [str(n) for n in range(100)]
+    assert at[0] > 100
+    assert at[0] == at[-1], "they have the same place"
+
+
+def test_many_axes_are_watched_at_the_same_time(tmp_path):
+    """26 axes with their lag monitored: more conditions than a machine of six axes needs."""
+    parameters = (Path(hli_bench.__file__).parent / "machines" / "demo" / "x.lis").read_text()
+    lines = ["cycle_us = 1000"]
+    for number in range(1, 27):
+        text = re.sub(r"(?m)^(kopf\.achs_nr\s+)\d+", rf"\g<1>{number}", parameters)
+        (tmp_path / f"x{number}.lis").write_text(text)
+        lines += [f"[axis.X{number}]", f'list = "x{number}.lis"', 'drive = "drives.models.servo402"']
+        lines += [f"node_id = {number}", f"[plant.axis.X{number}]", "pitch_mm = 10.0"]
+    (tmp_path / "machine.toml").write_text("\n".join(lines) + "\n")
+    words = " ".join(f"X{number}=5" for number in range(1, 27))
+    with Bench(tmp_path, plc=[]) as bench:
+        result = bench.run(f"%p\nN10 G01 {words} F60000\nN20 M30\n")
+
+    assert result.completed, result.errors

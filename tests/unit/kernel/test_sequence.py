@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 
+from hli_bench.base.errors import BenchError
 from hli_bench.kernel.sequence import END, Level, Phase, Sequence, Then, always
 from hli_bench.kernel.watches import ROOM, Watches, cycle_reached, lag_over, path_done
 from hli_bench.laws.control import ask_watches
@@ -120,3 +121,23 @@ def test_watch_row_is_fresh_when_it_is_handed_out_again(rows, watches):
     assert second == first
     assert not watches.met(second)
     assert np.all(rows.watch["count"][second] == 0)
+
+
+def test_gap_is_handed_out_again_and_the_scan_ends_behind_the_last(rows, watches):
+    first, second, third = (watches.watch(cycle_reached(n)) for n in (1, 2, 3))
+    watches.forget(second)
+    assert ask_watches(rows.axis, rows.path, rows.watch, rows.history, 3) == 2, "a gap does not end the scan"
+    assert watches.watch(cycle_reached(4)) == second
+    watches.forget(second)
+    watches.forget(third)
+
+    assert armed(rows) == 1, "rows behind the last in use are not looked at"
+    assert watches.met(first)
+
+
+def test_no_row_left_is_said_by_name(rows, watches):
+    for n in range(ROOM):
+        watches.watch(cycle_reached(n))
+
+    with pytest.raises(BenchError, match="more than 64 conditions"):
+        watches.watch(path_done())

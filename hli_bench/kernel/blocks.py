@@ -107,6 +107,11 @@ class ProgramEnd:
     source: Source
 
 
+@dataclass(frozen=True, slots=True)
+class Idle:
+    """The decoder has worked through many blocks that give nothing to execute: no item, but time to go on later."""
+
+
 Block = Line | MeasuringRun | Home | Text | DriveWrite | MeasureSettings | Dwell | ProgramEnd
 
 

@@ -13,6 +13,7 @@ from hli_bench.kernel.blocks import (
     Dwell,
     Flush,
     Home,
+    Idle,
     Line,
     MachineState,
     MeasureSettings,
@@ -34,10 +35,14 @@ from hli_bench.manual.axis.words import Edge, ProbingSignal
 from hli_bench.manual.errors import path_interpolator as errors
 from hli_bench.manual.errors import position_controller as position_errors
 
-Item = Block | Flush | CncError
+Item = Block | Flush | CncError | Idle
 Items = Generator[Item, MachineState | None, None]
 READY_CYCLES = 500
 """Cycles that a program start waits for drives on their way into operation (decided here)."""
+STEPS = 200
+"""Steps of a program in one cycle at most, the others follow in the next (decided here)."""
+TEXTS = 1000
+"""Synchronous texts that may wait for their place before decoding waits for them (decided here)."""
 REFILL = SEGMENTS // 2
 """Free segments at which the look-ahead goes on."""
 
@@ -106,10 +111,13 @@ class Channel:
             self._stop()
             return
         self._hand_out_texts()
-        while self.running and self._proceed():
+        for _ in range(STEPS):
+            if not (self.running and self._proceed()):
+                return
             if self._has_failed():
                 self._stop()
                 return
+        self._go_on_in_next_cycle()
 
     def abort(self) -> None:
         """End the program (CNC reset); what moves is braked, the next program begins when it stands."""
@@ -117,6 +125,9 @@ class Channel:
             self._activity.abort()
         self._core.path.stop()
         self._end(completed=False)
+
+    def _go_on_in_next_cycle(self) -> None:
+        self._wake.append(self._core.watches.watch(cycle_reached(self._core.cycle + 1)))
 
     def _has_failed(self) -> bool:
         return self._core.failed
@@ -152,6 +163,8 @@ class Channel:
             barrier, self._barrier = self._barrier, None
             self._behind_motion(barrier)
             return True
+        if len(self._texts) == TEXTS:
+            return False
         return self._next_item()
 
     def _next_item(self) -> bool:
@@ -161,6 +174,9 @@ class Channel:
         match item:
             case Line():
                 return self._put(item)
+            case Idle():
+                self._go_on_in_next_cycle()
+                return False
             case Text(synchronous=False):
                 self._core.emitted.append(MessageText(source=item.source, text=item.text))
             case Text():
@@ -197,7 +213,7 @@ class Channel:
     def _behind_motion(self, item: Item) -> None:
         """Execute what must not begin before all motion is done."""
         core = self._core
-        assert not isinstance(item, Line | Text | MeasureSettings | CncError)
+        assert not isinstance(item, Line | Text | MeasureSettings | CncError | Idle)
         self._source = item.source
         self._segment_source.clear()
         match item:

@@ -398,3 +398,26 @@ def test_many_axes_are_watched_at_the_same_time(tmp_path):
         result = bench.run(f"%p\nN10 G01 {words} F60000\nN20 M30\n")
 
     assert result.completed, result.errors
+
+
+@pytest.mark.parametrize(
+    ("body", "rounds", "cycles"),
+    [("P2 = P1 + 1", 10_000, 10), ('#MSG["%d", P1]', 1_000, 5), ("P2 = V.A.ABS.X", 1_000, 1)],
+)
+def test_loop_without_motion_takes_its_cycles(make, body, rounds, cycles):
+    """2000 blocks without motion and 200 steps a cycle: time goes on while a program only computes."""
+    result = make().run(f"%p\n$FOR P1 = 1, {rounds}\n{body}\n$ENDFOR\nM30\n")
+
+    assert result.completed, result.errors
+    assert cycles <= result.cycles <= 6 * cycles
+
+
+def test_endless_loop_without_motion_can_be_ended(make):
+    bench = make()
+    endless = bench.run("%p\nP1 = 0\n$WHILE 1\nP1 = P1 + 1\n$ENDWHILE\nM30\n", limit_s=0.01)
+    texts = bench.run('%p\nN5 G01 X1 F600\n$WHILE 1\n#MSG SYN["a"]\n$ENDWHILE\nM30\n', limit_s=0.05)
+
+    assert not endless.completed
+    assert not texts.completed
+    assert not texts.messages, "their place is 100 ms away"
+    assert bench.run("%p\nN10 G01 X2 F6000\nN20 M30\n").completed

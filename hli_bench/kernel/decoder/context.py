@@ -4,13 +4,13 @@ from collections.abc import Generator, Sequence
 
 from hli_bench.base.errors import InputError
 from hli_bench.base.ids import AxisIndex
-from hli_bench.kernel.blocks import Block, Flush, MachineState, Source
+from hli_bench.kernel.blocks import Block, Flush, Idle, MachineState, Source
 from hli_bench.kernel.decoder.configuration import DecoderAxis, DecoderDefaults
 from hli_bench.kernel.decoder.coordinates import Coordinates
 from hli_bench.kernel.decoder.measurements import Measurements
 from hli_bench.kernel.records import CncError
 
-Item = Block | Flush | CncError
+Item = Block | Flush | CncError | Idle
 Steps = Generator[Item, MachineState | None, None]
 """What every command yields; a `Flush` is answered with a `MachineState`."""
 

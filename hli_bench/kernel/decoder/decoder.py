@@ -5,7 +5,7 @@ from collections.abc import Generator, Iterable, Sequence
 from typing import Final
 
 from hli_bench.base.ids import AxisIndex
-from hli_bench.kernel.blocks import Line, MachineState, Source
+from hli_bench.kernel.blocks import Idle, Line, MachineState, Source
 from hli_bench.kernel.decoder.commands import COMMANDS, KNOWN
 from hli_bench.kernel.decoder.configuration import DecoderAxis, DecoderDefaults
 from hli_bench.kernel.decoder.context import Context, Item, Steps
@@ -20,6 +20,8 @@ _PLAIN_WORDS = re.compile(r"([A-Za-z])([+-]?(?:[0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]
 _HASH = re.compile(r"#\s*([A-Z]+)", re.IGNORECASE)
 _SUBROUTINE = re.compile(r"%L\s", re.IGNORECASE)
 _RAPID: Final = {"0": True, "00": True, "1": False, "01": False}
+WITHOUT_MOTION: Final = 2000
+"""Blocks without motion after which the kernel gets a chance to go on (decided here): a loop may be endless."""
 _ABSOLUTE: Final = {"90": True, "91": False}
 
 
@@ -70,12 +72,16 @@ class Decoder:
 
     def _items(self) -> Steps:
         context, next_line, plain = self._context, self._lines.next, self._plain
+        blocks = 0
         while (raw := next_line()) is not None:
             item = plain(raw)
-            if item is None:
-                continue
             if isinstance(item, Line):
                 yield item
+                continue
+            blocks += 1
+            if blocks % WITHOUT_MOTION == 0:
+                yield Idle()
+            if item is None:
                 continue
             yield from self._block(raw)
             if context.ended:

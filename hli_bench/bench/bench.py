@@ -22,6 +22,7 @@ from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, LocalLink, Observer
 from hli_bench.shells.pacing import RealPace, Stopwatch
 from hli_bench.shells.processes import PlcProcess, free_endpoint
+from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 from hli_bench.shells.zenoh_server import HliServer
 
 START_UP_CYCLES: Final = 2000
@@ -55,10 +56,14 @@ class Bench:
         processes: bool = False,
         observers: Sequence[Observer] = (),
         on_record: OnRecord | None = None,
+        realtime: bool = False,
     ) -> None:
+        if realtime and pace != "real":
+            raise InputError(f"realtime is for a bench by the clock (pace real), not for pace {pace}")
         self.config: MachineConfig = load(machine, settings or {})
         with ExitStack() as stack:
             self._closing = stack
+            self._realtime = realtime
             self.kernel = build.kernel(self.config)
             self.engine = self._engine(machine, settings or {}, can, processes=processes)
             self.engine.observers += observers
@@ -66,7 +71,10 @@ class Bench:
             self.engine.listeners.append(self._tap)
             self._endpoint = zenoh
             self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
-            self._pace = RealPace(self.config.cycle_ns) if pace == "real" else None
+            self._garbage = Garbage()
+            self._pace = RealPace(self.config.cycle_ns, idle=self._garbage.idle) if pace == "real" else None
+            self.pace_notes: list[str] = []
+            """What the operating system gave for `realtime`, and what not; filled by `start_up`."""
             self._plcs = plc_configs(self.config, plc)
             self._up = False
             self.interrupted: Result | None = None
@@ -98,6 +106,7 @@ class Bench:
         self._attach_plcs()
         self._up = True
         if self._pace is not None:
+            self._keep_calm()
             self._pace.restart()
 
     def run(
@@ -117,7 +126,9 @@ class Bench:
         self._tap.collector = collector
         first = self.engine.cycle
         last = FOREVER if limit_s is None else first + round(limit_s * NS_PER_S / self.config.cycle_ns)
-        late = self._pace.lateness.late if self._pace else 0
+        if self._pace is not None:
+            self._pace.resume()
+            self._pace.take_part()
         ended = False
         try:
             self.kernel.start(lines, name)
@@ -126,7 +137,7 @@ class Bench:
                 self._door.state_changed()
             ended = self._advance(lambda: not self.kernel.channel.running, last)
         except KeyboardInterrupt:
-            self.interrupted = self._result(name, "aborted", collector, first, watch, late)
+            self.interrupted = self._result(name, "aborted", collector, first, watch)
             raise
         finally:
             if not ended:
@@ -135,12 +146,13 @@ class Bench:
             if self._door is not None:
                 self._door.state_changed()
         status = "completed" if self.kernel.channel.completed else "error"
-        return self._result(name, status if ended else "aborted", collector, first, watch, late)
+        result = self._result(name, status if ended else "aborted", collector, first, watch)
+        if self._pace is not None:
+            self._garbage.between_programs()
+        return result
 
-    def _result(
-        self, name: str, status: str, collector: Collector, first: int, watch: Stopwatch, late: int
-    ) -> Result:
-        """Return the result of a program that began behind cycle `first`, with `late` late cycles before."""
+    def _result(self, name: str, status: str, collector: Collector, first: int, watch: Stopwatch) -> Result:
+        """Return the result of a program that began behind cycle `first`."""
         cycles = self.engine.cycle - first
         return Result(
             program=name,
@@ -153,12 +165,14 @@ class Bench:
             sim_s=round(cycles * self.config.cycle_ns * 1e-9, 9),
             wall_s=watch.seconds(),
             cycles=cycles,
-            late_cycles=self._pace.lateness.late - late if self._pace else 0,
+            lateness=self._pace.take_part() if self._pace else None,
         )
 
     def advance(self, cycles: int) -> None:
         """Let `cycles` cycles pass without a program."""
         self.start_up()
+        if self._pace is not None:
+            self._pace.resume()
         self._advance(lambda: False, self.engine.cycle + cycles)
 
     def reset(self) -> None:
@@ -213,9 +227,18 @@ class Bench:
             self.terminal_layouts = build.terminal_layouts(self.config)
             return Engine(self.kernel, LocalLink(side), side.pending)
         rows = self.kernel.rows.axis
-        remote = self._closing.enter_context(RemoteMachine(self.config, machine, settings, can, rows))
+        remote = self._closing.enter_context(
+            RemoteMachine(self.config, machine, settings, can, rows, realtime=self._realtime)
+        )
         self.terminal_layouts = build.terminal_layouts(self.config)
         return RemoteEngine(self.kernel, remote)
+
+    def _keep_calm(self) -> None:
+        """Ask Python and the operating system not to hold a cycle, until the bench is closed."""
+        calm = ask(realtime=self._realtime)
+        self._closing.callback(calm.close)
+        self._closing.enter_context(frozen_garbage())
+        self.pace_notes = calm.notes
 
     def _open_door(self, endpoint: str, *, lockstep: bool) -> HliDoor:
         server = HliServer(endpoint, self.config.name, self.kernel.image.layout, self.terminal_layouts)

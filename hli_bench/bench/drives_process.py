@@ -1,5 +1,6 @@
-"""Drives and plant as a process of their own: `python -m hli_bench.bench.drives_process FD MACHINE SETTINGS CAN`.
+"""Drives and plant as a process of their own: `python -m hli_bench.bench.drives_process`.
 
+Arguments: descriptor of its pipe, machine, settings, CAN interface (empty: none), `realtime` or nothing.
 Over the pipe it gets one order a cycle, and over the pipe go the telegrams: as numbers while they are all that passes,
 else as frames. Over a CAN interface frames pass in every cycle, and SYNC is what lets the machine move on.
 """
@@ -19,6 +20,7 @@ from hli_bench.laws.stride import exchange_in, exchange_out
 from hli_bench.runtime.machine_side import SYNC, MachineSide
 from hli_bench.shells.can_bus import CanBus
 from hli_bench.shells.processes import Pipe, work
+from hli_bench.shells.realtime import ask, settle
 from hli_bench.wire.can import CanFrame
 
 
@@ -110,9 +112,11 @@ class Drives:
 
 def main(pipe: Pipe, arguments: Sequence[str]) -> None:
     """Build the machine side and serve."""
-    machine, settings, can = arguments
+    machine, settings, can, realtime = arguments
     side = build.machine_side(load(machine, json.loads(settings)))
     bus = CanBus(can) if can else None
+    ask(realtime=bool(realtime))
+    settle()
     try:
         Drives(side, pipe, bus).run()
     finally:

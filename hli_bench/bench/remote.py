@@ -24,6 +24,7 @@ from hli_bench.wire.can import CanFrame
 from hli_bench.wire.images import TerminalLayout
 from hli_bench.wire.signals import Edge
 
+REALTIME: Final = "realtime"
 _DRIVES: Final = "hli_bench.bench.drives_process"
 _TERMINALS: Final = "hli_bench.bench.terminals_process"
 
@@ -66,13 +67,20 @@ class RemoteMachine:
     """
 
     def __init__(
-        self, config: MachineConfig, machine: str | Path, settings: Mapping[str, object], can: str, axis: Rows
+        self,
+        config: MachineConfig,
+        machine: str | Path,
+        settings: Mapping[str, object],
+        can: str,
+        axis: Rows,
+        *,
+        realtime: bool = False,
     ) -> None:
         """Start the processes; the numbers of telegrams come from and go into `axis`, the kernel's rows."""
         interface = can_interface(can)
         self._bus = CanBus(interface) if interface else None
         given = [str(machine), json.dumps(dict(settings))]
-        self._drives = Worker(_DRIVES, [*given, interface])
+        self._drives = Worker(_DRIVES, [*given, interface, REALTIME if realtime else ""])
         self._terminals = Worker(_TERMINALS, given)
         self._signals = signal_names([axis.name for axis in config.axes])
         self._edges: list[Edge] = []
@@ -148,10 +156,6 @@ class RemoteMachine:
         """Return the process images by terminal."""
         self._take_images()
         return self._images
-
-    def image_horizon(self, cycle: int) -> int:
-        """The images are made in every cycle."""
-        return 1
 
     def take_edges(self) -> list[Edge]:
         """Return the edges of all signals since the last call."""

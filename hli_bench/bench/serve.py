@@ -18,15 +18,28 @@ def serve(
     zenoh: str | None,
     on_line: Callable[[str], None],
     observers: Sequence[Observer] = (),
+    realtime: bool = False,
+    on_note: Callable[[str], None] = lambda _: None,
 ) -> None:
     """Start kernel, drives and terminals as processes and serve clients until KeyboardInterrupt.
 
-    `on_line` gets a line for people when the bench is up. Raises as `Bench` does.
+    `on_line` gets a line for people when the bench is up, `on_note` before that what `realtime` has got.
+    Raises as `Bench` does.
     """
     endpoint = zenoh or DEFAULT_ENDPOINT
     with Bench(
-        machine, settings, plc=plc, pace=pace, can=can, zenoh=endpoint, processes=True, observers=observers
+        machine,
+        settings,
+        plc=plc,
+        pace=pace,
+        can=can,
+        zenoh=endpoint,
+        processes=True,
+        observers=observers,
+        realtime=realtime,
     ) as bench:
         bench.start_up()
+        for note in bench.pace_notes:
+            on_note(note)
         on_line(f"{bench.config.name} is up on {endpoint}, cycle {bench.config.cycle_us} us, pace {pace}")
         bench.serve()

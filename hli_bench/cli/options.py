@@ -27,6 +27,7 @@ class BenchOptions:
     settings: dict[str, object]
     plc: list[str] | None
     pace: str
+    realtime: bool
     can: str
     zenoh: str | None
 
@@ -55,6 +56,12 @@ def add_bench(parser: argparse.ArgumentParser, *, pace: str, zenoh: str | None) 
         "--pace",
         choices=("free", "real"),
         help=f"as fast as possible and repeatable, or by the clock (default {pace})",
+    )
+    bench.add_argument(
+        "--realtime",
+        action="store_true",
+        default=None,
+        help="with --pace real: asks for SCHED_FIFO and locked memory, and says what it got",
     )
     bench.add_argument(
         "--can",
@@ -102,11 +109,15 @@ def bench_options(arguments: argparse.Namespace) -> BenchOptions:
     can = arguments.can or "inproc"
     if can.startswith("socketcand:"):
         raise NotEmulated(f"--can {can}")
+    pace = arguments.pace or arguments.default_pace
+    if arguments.realtime and pace != "real":
+        raise InputError(f"only with --pace real, the pace is {pace}", file="--realtime")
     return BenchOptions(
         machine=machine_name(arguments.machine or DEFAULT_MACHINE),
         settings=parse_set(arguments.set or []),
         plc=None if arguments.plc is None else plc_scripts(arguments.plc),
-        pace=arguments.pace or arguments.default_pace,
+        pace=pace,
+        realtime=bool(arguments.realtime),
         can=can,
         zenoh=arguments.zenoh or arguments.default_zenoh,
     )

@@ -29,6 +29,8 @@ RESULT_KEYS: Final = (
     "cycles",
 )
 """What `--result` writes."""
+PACED_KEYS: Final = ("late_cycles", "worst_lateness_us", "lateness_histogram")
+"""What it also writes of a bench in real pace."""
 EXIT_STATUS: Final[Mapping[str, int]] = {"completed": 0, "error": 1, "aborted": 130}
 OUTPUTS: Final = ("result", "trace", "report", "can_log")
 OF_AN_OWN_BENCH: Final = (
@@ -36,6 +38,7 @@ OF_AN_OWN_BENCH: Final = (
     "set",
     "plc",
     "pace",
+    "realtime",
     "can",
     "zenoh",
     "modbus",
@@ -101,7 +104,8 @@ def prepare(file: str | None, option: str) -> None:
 def finish(result: Mapping[str, Any], file: str | None) -> None:
     """Write the result file and say on standard error how the run ended."""
     if file is not None:
-        text = json.dumps({key: result[key] for key in RESULT_KEYS}, indent=2, ensure_ascii=False)
+        keys = (*RESULT_KEYS, *(key for key in PACED_KEYS if key in result))
+        text = json.dumps({key: result[key] for key in keys}, indent=2, ensure_ascii=False)
         Path(file).write_text(text + "\n", encoding="utf-8")
     print(
         f"{result['program']}: {result['status']}, {result['sim_s']:.3f} s of machine time "
@@ -123,6 +127,7 @@ def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) ->
         plc=options.plc,
         pace=options.pace,
         on_record=_print_record,
+        realtime=options.realtime,
         **_buses(options),
     ) as bench:
         for note in bench.config.notes:
@@ -130,6 +135,9 @@ def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) ->
                 print(f"warning: {note}", file=sys.stderr)
         report = None if arguments.report is None else _reporter(bench)
         with _recorders(bench, options, arguments):
+            bench.start_up()
+            for pace_note in bench.pace_notes:
+                print(pace_note, file=sys.stderr)
             try:
                 result = bench.run(program)
             except KeyboardInterrupt:

@@ -1,6 +1,7 @@
 """`hli-bench serve`: a bench that stays up."""
 
 import argparse
+import sys
 
 from hli_bench.cli.options import DEFAULT_ENDPOINT, Commands, add_bench, bench_options
 
@@ -31,6 +32,8 @@ def execute(arguments: argparse.Namespace) -> int:
             can=options.can,
             zenoh=options.zenoh,
             on_line=lambda line: print(line, flush=True),
+            realtime=options.realtime,
+            on_note=lambda note: print(note, file=sys.stderr, flush=True),
         )
     except KeyboardInterrupt:
         return 0

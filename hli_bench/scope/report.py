@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from html import escape
+from math import log10
 from typing import Any, Final
 
 import numpy as np
@@ -32,6 +33,7 @@ def report_html(recording: Recording, result: Mapping[str, Any], machine_name: s
         _texts(result),
         _overview(recording),
         _events(recording),
+        _lateness(result),
         _variables(result["variables"]),
     ]
     return (
@@ -141,6 +143,34 @@ def _seconds(ns: int) -> str:
     seconds, rest = divmod(ns, NS_PER_S)
     digits = f"{rest:09d}"
     return f"{seconds}.{digits[:3]}\u202f{digits[3:6]}\u202f{digits[6:]} s"
+
+
+# -- real pace --------------------------------------------------------------------------------------------
+
+
+def _lateness(result: Mapping[str, Any]) -> str:
+    """Return how a paced bench kept its cycle: a bar for each range of lateness, on a logarithmic scale."""
+    bins = result.get("lateness_histogram")
+    if not bins:
+        return ""
+    most = log10(max(one["cycles"] for one in bins) + 1)
+    rows = "".join(
+        f'<li><span class="soft">{_range(one)}</span><span class="bar">'
+        f'<i style="width:{log10(one["cycles"] + 1) / most:.1%}"></i></span><span>{one["cycles"]}</span></li>'
+        for one in bins
+    )
+    return (
+        f"<section><h2>Real pace</h2><p>{result['late_cycles']} of {result['cycles']} cycles were late by a cycle "
+        f"or more, the worst began {result['worst_lateness_us']:.1f} µs behind its time.</p>"
+        f'<p class="soft">Cycles by lateness in µs; bars are logarithmic.</p><ul class="bars">{rows}</ul></section>'
+    )
+
+
+def _range(one: Mapping[str, Any]) -> str:
+    """Return the range of a bin."""
+    if one["below_us"] is None:
+        return f"{one['from_us']} and more"
+    return f"{one['from_us']} to {one['below_us']}"
 
 
 # -- the whole run ----------------------------------------------------------------------------------------

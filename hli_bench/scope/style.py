@@ -28,6 +28,10 @@ ul.texts { margin: 0; padding: 0; list-style: none; font-family: ui-monospace, M
   font-size: .9rem; overflow-wrap: anywhere; }
 ul.texts b { color: var(--soft); font-weight: 400; display: inline-block;
   min-width: 3.5rem; padding-right: .75rem; }
+ul.bars { margin: .5rem 0 0; padding: 0; list-style: none; font-variant-numeric: tabular-nums; font-size: .8rem; }
+.bars li { display: grid; grid-template-columns: 9rem 1fr 4.5rem; gap: .75rem; align-items: center; }
+.bars li span:first-child, .bars li span:last-child { text-align: right; } .bar { background: var(--panel); }
+.bars i { display: block; height: .7rem; background: var(--signal); print-color-adjust: exact; }
 details { margin-top: 1rem; } summary { cursor: pointer; color: var(--soft); }
 figure { margin: .5rem 0 0; break-inside: avoid; }
 .name { margin: .6rem 0 .15rem 3.6rem; color: var(--soft); font-size: .8rem; line-height: 1.2; }

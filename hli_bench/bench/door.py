@@ -152,7 +152,8 @@ class HliDoor:
             request.plc, cycles, self._server, self.publish, lockstep=self._lockstep, timeout_s=ANSWER_S
         )
         engine.attach(port)
-        request.accept(cycle=engine.cycle, cycle_us=cycle_ns // 1000, lockstep=self._lockstep)
+        first = (engine.cycle // cycles + 1) * cycles
+        request.accept(cycle=first, cycle_us=cycle_ns // 1000, lockstep=self._lockstep)
 
     def _let_go(self) -> None:
         for plc in self._server.departed():

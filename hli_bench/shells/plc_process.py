@@ -1,6 +1,6 @@
 """A PLC script as a process of its own, attached to a bench over Zenoh.
 
-`python -m hli_bench.shells.plc_process SCRIPT ENDPOINT [NAME]`; `start` runs that.
+`python -m hli_bench.shells.plc_process SCRIPT ENDPOINT [NAME [PERIOD_US]]`; `start` runs that.
 """
 
 import json
@@ -15,6 +15,7 @@ from typing import Any, Final
 import zenoh
 
 from hli_bench.base.errors import BenchError
+from hli_bench.base.time import Ns
 from hli_bench.plc import Task, load
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
 from hli_bench.shells.zenoh_client import HliClient
@@ -24,13 +25,14 @@ RECONNECT_S: Final = 2.0
 """How long a PLC waits for a bench that vanished before it ends; a link comes back in 0.2 s."""
 
 
-class AttachedPlc:
-    """A task with its session: takes images off the net, puts commands."""
+class ScriptClient:
+    """A task with its session: takes images off the net, puts commands. `period_us` None: the script's own."""
 
-    def __init__(self, client: HliClient, script: Path, name: str) -> None:
+    def __init__(self, client: HliClient, script: Path, name: str, period_us: int | None = None) -> None:
         self._client = client
         self._script = script
         self._name = name
+        self._period_us = period_us
         self._key = f"{client.machine}/plc/{name}"
         self._packing = CommandsPacking(client.layout)
         self._inbox: SimpleQueue[tuple[str, Any]] = SimpleQueue()
@@ -59,33 +61,36 @@ class AttachedPlc:
         """Take part with a fresh task until the bench lets go of it (True) or ends (False)."""
         client = self._client
         script = load(self._script)
-        task = Task(self._name, script, script.period_us, client.layout, client.terminals)
+        period_us = script.period_us if self._period_us is None else self._period_us
+        task = Task(self._name, script, period_us, client.layout, client.terminals)
         for terminal in client.terminals:
             self._io[terminal.name] = client.ask_packed(f"io/{terminal.name}")
         terms = json.loads(
-            client.ask_packed(f"plc/{self._name}/attach", json.dumps({"period_us": script.period_us}))
+            client.ask_packed(f"plc/{self._name}/attach", json.dumps({"period_us": period_us}))
         )
-        due, period = terms["cycle"], max(1, terms["period_us"] // terms["cycle_us"])
+        first, period = terms["cycle"], terms["period_us"] // terms["cycle_us"]
         publisher = client.session.declare_publisher(f"{self._key}/commands", express=True)
         while True:
-            image = self._next_image()
+            image = self._next_image(first, period)
             if isinstance(image, bool):
                 publisher.undeclare()
                 return image
-            cycle, dc_ns, elements = unpack_image(image)
-            if cycle < due:
-                continue
-            commands = task.step(cycle, dc_ns, elements, self._io)
+            cycle, dc_ns, elements, io = image
+            commands = task.step(cycle, dc_ns, elements, io)
             publisher.put(self._packing.pack(commands))
-            due += ((cycle - due) // period + 1) * period
 
-    def _next_image(self) -> bytes | bool:
-        """Return the newest image there is, or the answer of `_attached` when its time is over."""
-        image: bytes | None = None
+    def _next_image(self, first: int, period: int) -> tuple[int, Ns, bytes, dict[str, bytes]] | bool:
+        """Return the newest image that is due with the terminals as of then, or the answer of `_attached`.
+
+        Due are the images from `first` on whose cycle `period` divides; the bench puts others too.
+        """
+        image: tuple[int, Ns, bytes, dict[str, bytes]] | None = None
         while image is None or not self._inbox.empty():
             kind, sample = self._inbox.get()
             if kind == "image":
-                image = payload(sample)
+                cycle, dc_ns, elements = unpack_image(payload(sample))
+                if cycle >= first and cycle % period == 0:
+                    image = cycle, dc_ns, elements, dict(self._io)
             elif kind == "io":
                 self._io[str(sample.key_expr).rpartition("/")[2]] = payload(sample)
             elif kind == "detached":
@@ -107,33 +112,42 @@ class AttachedPlc:
         return False
 
 
-def attach(script: Path, endpoint: str, machine: str = "", name: str = "") -> None:
-    """Attach a script to the bench at `endpoint` and run it until the bench ends; `name`: by default the file's.
+def attach(
+    script: Path, endpoint: str, machine: str = "", name: str = "", period_us: int | None = None
+) -> None:
+    """Attach a script to the bench at `endpoint` and run it until the bench ends.
+
+    `name` is by default the file's, `period_us` the script's own.
 
     Raises EnvironmentLacks when no bench is there, InputError when the script fails or the bench refuses it.
     """
     load(script)
     with HliClient(endpoint, machine) as client:
-        AttachedPlc(client, script, name or script.stem).run()
+        ScriptClient(client, script, name or script.stem, period_us).run()
 
 
-def start(script: Path, endpoint: str, name: str = "") -> "subprocess.Popen[bytes]":
+def start(
+    script: Path, endpoint: str, name: str = "", period_us: int | None = None
+) -> "subprocess.Popen[bytes]":
     """Start `attach` as a process; errors go to its standard error, exit status as of the command line.
 
     It has a process group of its own: Ctrl-C is for the process that starts it and ends it.
     """
-    arguments = [str(script), endpoint, *([name] if name else [])]
+    arguments = [str(script), endpoint, name, *([] if period_us is None else [str(period_us)])]
     command = [sys.executable, "-m", "hli_bench.shells.plc_process", *arguments]
     return subprocess.Popen(command, process_group=0)
 
 
 def main(arguments: Sequence[str]) -> int:
     """Run `attach` from the command line; return the exit status."""
-    if len(arguments) not in (2, 3):
-        sys.stderr.write("SCRIPT ENDPOINT [NAME] expected\n")
+    try:
+        script, endpoint, name, period = (*arguments, *("", "")[: 4 - len(arguments)])
+        period_us = int(period) if period else None
+    except ValueError:
+        sys.stderr.write("SCRIPT ENDPOINT [NAME [PERIOD_US]] expected, the period a whole number\n")
         return 2
     try:
-        attach(Path(arguments[0]), arguments[1], name=arguments[2] if len(arguments) == 3 else "")
+        attach(Path(script), endpoint, name=name, period_us=period_us)
     except KeyboardInterrupt:
         return 0
     except BenchError as error:

@@ -39,8 +39,9 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
 class PlcProcess:
     """A PLC script running as a process of its own, attached to the bench over Zenoh."""
 
-    def __init__(self, script: Path, endpoint: str, name: str) -> None:
-        self._process = plc_process.start(script, endpoint, name)
+    def __init__(self, script: Path, endpoint: str, name: str, period_us: int | None = None) -> None:
+        """Start it; `period_us` None: the script's own."""
+        self._process = plc_process.start(script, endpoint, name, period_us)
         self._script = script
 
     def __enter__(self) -> Self:

@@ -51,7 +51,7 @@ class Attach(Request):
     admit: Callable[[str], None]
 
     def accept(self, *, cycle: int, cycle_us: int, lockstep: bool) -> None:
-        """Take the PLC in: it answers image `cycle` and from then on one every `period_us`."""
+        """Take the PLC in: it answers the images from `cycle` on whose number its period in cycles divides."""
         self.admit(self.plc)
         self.reply(
             json.dumps(

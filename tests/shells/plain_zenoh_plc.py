@@ -1,6 +1,6 @@
 """A PLC made of zenoh, struct and json alone: forwards a touch probe to one axis.
 
-`python plain_zenoh_plc.py ENDPOINT [MACHINE] [AXIS]`. It takes all it needs to know from `hli/layout` and
+`python plain_zenoh_plc.py ENDPOINT [MACHINE] [AXIS] [PERIOD_US]`. It takes all it needs to know from `hli/layout` and
 `hli/terminals`, attaches, answers every image it is due for and ends with the bench.
 """
 
@@ -16,17 +16,17 @@ NAME = "plain"
 CODES = {"BOOL": "?", "UNS08": "B", "UNS16": "H", "UNS32": "I", "UNS64": "Q", "SGN32": "i", "SGN64": "q"}
 
 
-def main(endpoint: str, machine: str = "demo", axis: str = "3") -> None:
+def main(endpoint: str, machine: str = "demo", axis: str = "3", period_us: str = "1000") -> None:
     config = zenoh.Config()
     config.insert_json5("mode", '"client"')
     config.insert_json5("connect/endpoints", json.dumps([endpoint]))
     config.insert_json5("scouting/multicast/enabled", "false")
     config.insert_json5("transport/link/tx/lease", "500")
     with zenoh.open(config) as session:
-        run(session, machine, axis)
+        run(session, machine, axis, int(period_us))
 
 
-def run(session: zenoh.Session, machine: str, axis: str) -> None:
+def run(session: zenoh.Session, machine: str, axis: str, period_us: int) -> None:
     def ask(path: str, question: str | None = None) -> bytes:
         for reply in session.get(f"{machine}/{path}", payload=question, timeout=10.0):
             if reply.ok is None:
@@ -49,8 +49,8 @@ def run(session: zenoh.Session, machine: str, axis: str) -> None:
     (terminal,) = [row for row in json.loads(ask("hli/terminals")) if row["name"] == "probe"]
     entries = {entry: (CODES[kind], at) for entry, kind, at in terminal["entries"]}
     probe = ask("io/probe")
-    terms = json.loads(ask(f"plc/{NAME}/attach", json.dumps({"period_us": 1000})))
-    due, period = terms["cycle"], terms["period_us"] // terms["cycle_us"]
+    terms = json.loads(ask(f"plc/{NAME}/attach", json.dumps({"period_us": period_us})))
+    first, period = terms["cycle"], terms["period_us"] // terms["cycle_us"]
 
     area = f"ax/{axis}/lr_mc_control"
     written = {}
@@ -64,9 +64,8 @@ def run(session: zenoh.Session, machine: str, axis: str) -> None:
         if kind != "image":
             continue
         (cycle,) = struct.unpack_from("<Q", sample.payload.to_bytes())
-        if cycle < due:
+        if cycle < first or cycle % period:
             continue
-        due += ((cycle - due) // period + 1) * period
         level, edge_ns = (
             struct.unpack_from("<" + entries[entry][0], probe, entries[entry][1])[0]
             for entry in ("ch2/input", "ch2/latch_pos")

@@ -4,16 +4,21 @@ import json
 import os
 import signal
 import struct
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from hli_bench.base.loading import data_file
+from hli_bench.shells.plc_process import main
+from hli_bench.shells.processes import PlcProcess
 from hli_bench.shells.zenoh_session import connect
 
 UNIT = "ax/3/lr_mc_control/probing_signal"
 PLC_STOPPED = 40011
+PLAIN_PLC = Path(__file__).with_name("plain_zenoh_plc.py")
 CRASHING = """
 from hli_bench.plc import Plc
 
@@ -197,3 +202,67 @@ def test_commands_of_a_wrong_size_are_refused_and_the_plc_stays(
         assert bench.plcs() == ["hand"]
     token.undeclare()
     bench.settled(lambda state: state["plcs"] == [])
+
+
+DWELLS = "".join(
+    f"N{10 * n} G04 0.0{n % 9 + 1}\nN{10 * n + 5} G01 G90 Z{299 + n % 2} F6000\n" for n in range(1, 40)
+)
+SLOW = """
+from hli_bench.plc import Plc
+
+class Slow(Plc):
+    period_us = 4000
+
+    def start(self, hli, io):
+        hli.ax[3].lr_mc_control.release_feedhold.enable_w = True
+        hli.ax[3].lr_mc_control.release_feedhold.command_w = True
+
+    def cycle(self, hli, io):
+        hli.ax[3].lr_mc_control.timestamp.command_w += 1
+"""
+
+
+@pytest.mark.parametrize("lag", [0, 1, 3])
+def test_a_slow_plc_stays_in_lock_step_through_many_decisions(
+    serve: Any, program: Any, tmp_path: Path, lag: int
+) -> None:
+    """Decisions and writes of others put images in cycles that are none of the PLC's; so does its attaching."""
+    script = tmp_path / "slow.py"
+    script.write_text(SLOW)
+    bench = serve("--plc", "none", "--pace", "free")
+    with bench.client() as client:
+        for _ in range(lag):
+            client.set("ax/1/head/plc_present_w", "FALSE")
+        bench.plc(script)
+        first = client.state()["cycle"] // 4
+        run = bench.run(program(DWELLS + "N900 M30\n"))
+        assert run.end() == 0, run.err
+        state = client.state()
+        assert state["plcs"] == [{"name": "slow", "period_cycles": 4}]
+        assert client.get("ax/3/lr_mc_control/timestamp/command_w") == state["cycle"] // 4 - first
+        assert client.hli_errors()["refused"] == 0
+
+
+def test_a_plain_plc_of_4_ms_probes(start: Any, serve: Any, probe: Path) -> None:
+    bench = serve("--plc", "none", "--pace", "free")
+    plc = start(bench.endpoint, "demo", "3", "4000", program=[sys.executable, "-I", PLAIN_PLC])
+    bench.settled(lambda state: state["plcs"] == [{"name": "plain", "period_cycles": 4}])
+    run = bench.run(probe)
+    assert run.end() == 0, run.err
+    assert run.out == ["V.A.MESS.Z=298.000000"]
+    assert plc.process.poll() is None
+
+
+@pytest.mark.parametrize("given", [["a", "b", "c", "soon"], ["a"], ["a", "b", "c", "1", "2"]])
+def test_arguments_that_make_no_sense(given: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(given) == 2
+    assert "PERIOD_US" in capsys.readouterr().err
+
+
+def test_a_period_that_is_given_replaces_the_scripts_own(serve: Any) -> None:
+    bench = serve("--plc", "none", "--pace", "free")
+    script = data_file("plc_scripts", "demo.py")
+    with PlcProcess(script, bench.endpoint, "given", 3000), PlcProcess(script, bench.endpoint, "own", None):
+        bench.settled(lambda state: len(state["plcs"]) == 2)
+        periods = {plc["name"]: plc["period_cycles"] for plc in bench.state()["plcs"]}
+    assert periods == {"given": 3, "own": 1}

@@ -1,4 +1,5 @@
 from contextlib import contextmanager
+from contextvars import Context
 from typing import Any
 
 import pytest
@@ -75,7 +76,7 @@ def test_tp_gives_one_pulse_whatever_in_does_meanwhile() -> None:
 
 def test_a_timer_outside_of_a_task_has_no_time() -> None:
     with pytest.raises(LookupError):
-        TON()(IN=True, PT=1)
+        Context().run(lambda: TON()(IN=True, PT=1))
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,10 @@ from hli_bench.wire.images import TerminalLayout
 
 AXES = [(number, name, "linear") for number, name in enumerate(("X", "Y", "Z", "X2", "A", "B", "S"), 1)]
 LAYOUT = Layout(AXES)
-PROBE = TerminalLayout("probe", (("ch2/input", "BOOL", 0), ("ch2/latch_pos", "UNS64", 8)))
+PROBE = TerminalLayout(
+    "probe", (("ch2/input", "BOOL", 0), ("ch2/latch_pos", "UNS64", 8), ("ch2/latch_neg", "UNS64", 16))
+)
+LATCH_NEG = 77
 CAMS = TerminalLayout("cams", tuple((f"ch{number}/input", "BOOL", number - 1) for number in range(1, 9)))
 
 
@@ -25,7 +28,7 @@ def run(name: Any, *images: Any) -> Any:
     written: dict[str, Any] = {}
     seen = []
     for cycle, (level, latch, cams) in enumerate(images):
-        io = {"probe": struct.pack("<?7xQ", level, latch), "cams": bytes(cams)}
+        io = {"probe": struct.pack("<?7xQQ", level, latch, LATCH_NEG), "cams": bytes(cams)}
         commands = task.step(cycle, cycle * 1_000_000, image.data, io)
         written.update({write.path: write.value for write in commands.writes})
         seen.append(dict(written))
@@ -45,6 +48,7 @@ def test_probe_level_and_time_reach_every_measurement_axis_over_enabled_units(na
         area = f"ax/{axis}/lr_mc_control"
         assert before[f"{area}/probing_signal/command_w"] is False
         assert after[f"{area}/probing_signal/command_w"] is True
+        assert before[f"{area}/timestamp/command_w"] == LATCH_NEG
         assert after[f"{area}/timestamp/command_w"] == 123_456_789
         assert after[f"{area}/probing_signal/enable_w"] is True
         assert after[f"{area}/timestamp/enable_w"] is True

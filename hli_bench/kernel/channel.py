@@ -141,6 +141,7 @@ class Channel:
         if core.starting and core.cycle < begin_by:
             self._wake.append(core.watches.watch(cycle_reached(begin_by)))
             return False
+        core.take_back()
         core.preparation.synchronise()
         self._begin_by = None
         return True

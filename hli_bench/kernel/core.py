@@ -10,7 +10,7 @@ from hli_bench.kernel.path_preparation.preparation import Preparation
 from hli_bench.kernel.records import CncError, Emitted
 from hli_bench.kernel.setup import AxisSetup, KernelSetup
 from hli_bench.kernel.watches import Watches, room
-from hli_bench.laws.rows import JOG, KernelRows, Rows
+from hli_bench.laws.rows import JOG, PATH, KernelRows, Rows
 from hli_bench.manual.errors import ErrorSheet, Severity
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
 from hli_bench.protocols.hli.image import Image
@@ -78,6 +78,11 @@ class Core:
     def at_rest(self) -> bool:
         """No set point moves."""
         return self.path.idle and not self.self_moving
+
+    def take_back(self) -> None:
+        """Give axes whose own motion was broken off (homing) back to the path; they stand."""
+        mode = self.rows.axis["mode"]
+        mode[mode == JOG] = PATH
 
     def axis(self, index: AxisIndex) -> AxisSetup:
         """Return the setup of an axis."""

@@ -300,6 +300,17 @@ def test_absolute_axis_can_be_passed_over(make, recorder):
     assert np.ptp(recorder.column("target", X)[20:]) == 0
 
 
+@pytest.mark.req("H-211")
+def test_incremental_axis_that_is_to_be_passed_over_is_a_warning(make, recorder):
+    settings = axis("X", 0.0) | {"axis.X.kenngr.homing.homing_type": "IGNORE_ABS_POS"}
+    result = home(make(settings, recorder=recorder))
+
+    assert result.completed
+    assert [(one.id, one.axis, one.severity) for one in result.errors] == [(110584, "X", "warning")]
+    assert not result.homing
+    assert np.ptp(recorder.column("target", X)[20:]) == 0
+
+
 def test_drive_out_of_operation_may_not_home(make, errors):
     bench = make(axis("X", 0.0) | {"axis.X.lr_param.suppress_pos_lag_error": 1})
     bench.run(
@@ -321,6 +332,52 @@ def test_missing_zero_pulse_ends_at_the_longest_way(make, errors, recorder):
     assert not result.homing
     assert -52.5 < truth_mm(bench, X) < -52.0
     assert recorder.column("probe_function", X)[-1] == 0
+
+
+@pytest.mark.parametrize(
+    "never",
+    [
+        {"plant.cam.X.from_mm": -5000.0, "plant.cam.X.to_mm": -4000.0},
+        {"plant.cam.X.from_mm": -5000.0, "axis.X.kenngr.shift_offset_zero_pulse_activation": 10_000_000},
+    ],
+    ids=["cam", "zero pulse"],
+)
+def test_what_never_comes_ends_at_twice_the_software_limits(make, errors, never):
+    """100 mm between the limits: 200 mm from the begin of the homing, then the axis brakes."""
+    limits = {"axis.X.kenngr.swe_neg": -600_000, "axis.X.kenngr.swe_pos": 400_000}
+    settings = axis("X", 0.0, **{"getriebe[0].vb_reflow": FAST_UM}) | limits | never
+    bench = make(settings)
+    result = home(bench)
+    bench.advance(SETTLE)
+
+    assert errors(result) == [(70394, "X", "N10")]
+    assert not result.homing
+    assert -202.0 < truth_mm(bench, X) < -200.0
+    assert bench.kernel.core.at_rest
+    assert bench.run("%p\nN10 G01 X-150 F6000\nN20 M30\n").completed
+    bench.advance(SETTLE)
+    assert truth_mm(bench, X) == pytest.approx(-150.0, abs=1e-3), "the path has the axis again"
+
+
+@pytest.mark.req("H-227")
+@pytest.mark.parametrize(("longest", "degrees"), [(450_000, 45.0), (0, 3600.0)])
+def test_longest_way_of_a_rotary_axis(make, errors, longest, degrees):
+    """P-AXIS-00412, without it ten turns."""
+    settings = {
+        "axis.A.start_mm": 0.0,
+        "axis.A.kenngr.abs_pos_gueltig": 0,
+        "axis.A.kenngr.homing_max_movement_dist": longest,
+        "plant.cam.A.from_mm": -9000.0,
+        "plant.cam.A.to_mm": -8900.0,
+        "axis.A.getriebe[0].vb_refmax": 200_000,
+        "axis.A.getriebe[0].a_ref": 4_000,
+    }
+    bench = make(settings)
+    result = home(bench, "A1")
+    bench.advance(SETTLE)
+
+    assert errors(result) == [(70394, "A", "N10")]
+    assert degrees < abs(bench.position_mm("A")) < degrees + 6.0
 
 
 @pytest.mark.req("H-016")

@@ -11,6 +11,7 @@ from hli_bench.kernel.position_controller import homing
 from hli_bench.kernel.position_controller.homing import default
 from hli_bench.kernel.sequence import Sequence
 from hli_bench.manual.axis.words import HomingType
+from hli_bench.manual.errors import axis_manager as manager_errors
 from hli_bench.manual.errors import path_interpolator as errors
 
 
@@ -48,16 +49,24 @@ class HomingOrder:
                 homing.abandon(run)
 
     def _begin(self, axis: AxisIndex) -> tuple[homing.Run, Sequence[homing.Run]] | None:
+        """Set the axis going; None when it is passed over (P-AXIS-00299).
+
+        IGNORE_ABS_POS on an axis without an absolute system is a warning at each G74 (decided here); the axis is
+        passed over all the same (homing manual 4.2).
+        """
         setup = self._core.axis(axis)
-        if setup.params.kenngr.homing.homing_type is HomingType.IGNORE_ABS_POS:
+        kenngr = setup.params.kenngr
+        if kenngr.homing.homing_type is HomingType.IGNORE_ABS_POS:
+            if not kenngr.abs_pos_gueltig:
+                self._core.report(manager_errors.IGNORE_ABS_POS, self._block.source, setup.number, axis=axis)
             return None
-        if setup.params.kenngr.homing.homing_type is HomingType.DISABLED:
+        if kenngr.homing.homing_type is HomingType.DISABLED:
             self._core.report(errors.HOMING_DISABLED, self._block.source, setup.number, axis=axis)
             return None
         if setup.kind == "S":
             raise NotEmulated(f"homing of spindle {setup.name} (homing manual 2.3.2)")
         self._core.referenced[axis] = False
         self._core.show(axis, "lr_state/homing_done_r", False)
-        run = homing.Run(self._core, self._block.source, axis)
+        run = homing.Run(self._core, self._block.source, axis, float(self._core.row(axis)["actual"]))
         sequence = Sequence(default.table(run), run, default.first(run), self._core.watches)
         return run, sequence

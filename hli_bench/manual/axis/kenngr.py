@@ -862,7 +862,7 @@ class Kenngr:
                 "homing manual 4.2 (the key printed there belongs to another parameter); key from the"
                 " overview 4.1"
             ),
-            effect=Effect.ACCEPTED,
+            effect=Effect.EMULATED,
         ),
     )
     probing_offset: int = param(

@@ -28,6 +28,8 @@ class Run:
     core: Core
     source: Source
     axis: AxisIndex
+    begin: float = 0.0
+    """Where the axis stood before, 0.1 um."""
     method: str = ""
 
     @property

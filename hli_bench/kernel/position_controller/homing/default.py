@@ -15,14 +15,21 @@ from hli_bench.kernel.position_controller.homing import (
 )
 from hli_bench.kernel.position_controller.latches import unwrapped
 from hli_bench.kernel.sequence import END, Phase, Table, Then, Until
+from hli_bench.kernel.setup import AxisSetup
 from hli_bench.kernel.watches import jog_stopped, moved, probe_status
 from hli_bench.manual.axis.fallbacks import effective_input
+from hli_bench.manual.axis.kenngr import Kenngr
 from hli_bench.manual.errors import position_controller as errors
 
 ZERO_PULSE = 0x15
 """Touch probe function: enable, encoder zero pulse, positive edge."""
 STORED = 0x02
 ENDLESS = 1 << 53
+LONGEST_WAY = 100_000_000
+"""10 m in 0.1 um."""
+LONGEST_TURN = 36_000_000
+"""3600 degrees in 0.0001 degree."""
+_UNSET = Kenngr()
 
 
 def first(run: Run) -> str:
@@ -39,16 +46,22 @@ def table(run: Run) -> Table[Run]:
     by_cam = kenngr.homing_without_zero_pulse
     found = Then(on, "stop", _reference_here) if by_cam else Then(on, "on cam")
     lost = Then(off, "lost", _no_zero_pulse)
+    endless = Then(_beyond, "lost", _path_exceeded)
     return {
-        "to cam": Phase(_move(gear.vb_refmax), (Then(on, "stop on cam"),)),
+        "to cam": Phase(_move(gear.vb_refmax), (Then(on, "stop on cam"), endless)),
         "stop on cam": Phase(_stop, (Then(_stands, "off cam"),)),
-        "off cam": Phase(_move(away, -1), (Then(off, "stop off cam"),)),
+        "off cam": Phase(_move(away, -1), (Then(off, "stop off cam"), endless)),
         "stop off cam": Phase(_stop, (Then(_stands, "search"),)),
-        "search": Phase(_move(gear.vb_reflow), (found,)),
-        "on cam": Phase(_nothing, (Then(_activated, "zero pulse"), lost)),
+        "search": Phase(_move(gear.vb_reflow), (found, endless)),
+        "on cam": Phase(_nothing, (Then(_activated, "zero pulse"), lost, endless)),
         "zero pulse": Phase(
             _arm_zero_pulse,
-            (Then(_latched, "stop", _reference_latched), Then(_too_far, "lost", _no_zero_pulse), lost),
+            (
+                Then(_latched, "stop", _reference_latched),
+                Then(_too_far, "lost", _no_zero_pulse),
+                lost,
+                endless,
+            ),
         ),
         "stop": Phase(_stop, (Then(_stands, END, finish),)),
         "lost": Phase(_stop, (Then(_stands, END),)),
@@ -89,6 +102,25 @@ def _too_far(run: Run) -> Until:
     return _moved(run, run.setup.params.lr_hw[0].zero_pulse_search_max_dist or ENDLESS)
 
 
+def _beyond(run: Run) -> Until:
+    return moved(run.axis, float(longest_way(run.setup)), run.begin)
+
+
+def longest_way(axis: AxisSetup) -> int:
+    """Return how far from its begin homing may take the axis, 0.1 um (0.0001 degree).
+
+    P-AXIS-00412 for rotary axes and spindles. Without it (decided here) twice the way between software limits
+    that the list sets, else 10 m or 3600 degrees: a cam that never comes must not let the axis run for ever.
+    """
+    kenngr = axis.params.kenngr
+    if axis.kind != "T":
+        return kenngr.homing_max_movement_dist or LONGEST_TURN
+    limits = (kenngr.swe_neg, kenngr.swe_pos)
+    if kenngr.swe_neg >= kenngr.swe_pos or limits == (_UNSET.swe_neg, _UNSET.swe_pos):
+        return LONGEST_WAY
+    return 2 * (kenngr.swe_pos - kenngr.swe_neg)
+
+
 def _shift(run: Run) -> int:
     return 8 * (effective_input(run.setup.params) - 1)
 
@@ -117,3 +149,8 @@ def _reference_here(run: Run) -> None:
 def _no_zero_pulse(run: Run) -> None:
     run.core.row(run.axis)["probe_function"] = 0
     run.core.report(errors.ZERO_PULSE_PATH, run.source, run.setup.number, axis=run.axis)
+
+
+def _path_exceeded(run: Run) -> None:
+    run.core.row(run.axis)["probe_function"] = 0
+    run.core.report(errors.HOMING_PATH, run.source, run.setup.number, axis=run.axis)

@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final
 
-from hli_bench.base.errors import BenchError, InputError
+from hli_bench.base.errors import InputError, NotEmulated
 from hli_bench.base.time import Ns
 from hli_bench.bench.plc_ports import AttachedPlc, period_cycles
 from hli_bench.bench.result import error_of
@@ -54,6 +54,10 @@ class HliDoor:
     def waiting(self) -> bool:
         """What a client did, or its departure, has not taken effect yet."""
         return bool(self._written or self._resets) or self._engine.cycle < self._settle_until
+
+    def attached(self, name: str) -> bool:
+        """Tell whether a PLC of that name takes part from another process."""
+        return name in self._server.attached
 
     def after_step(self) -> None:
         """Publish the cycle, do what was asked, let go of PLCs that have departed."""
@@ -151,9 +155,9 @@ class HliDoor:
         port = AttachedPlc(
             request.plc, cycles, self._server, self.publish, lockstep=self._lockstep, timeout_s=ANSWER_S
         )
-        engine.attach(port)
         first = (engine.cycle // cycles + 1) * cycles
-        request.accept(cycle=first, cycle_us=cycle_ns // 1000, lockstep=self._lockstep)
+        if request.accept(cycle=first, cycle_us=cycle_ns // 1000, lockstep=self._lockstep):
+            engine.attach(port)
 
     def _let_go(self) -> None:
         for plc in self._server.departed():
@@ -164,10 +168,16 @@ class HliDoor:
 
 
 def result_reply(run: Callable[[], Any], request: RunProgram) -> None:
-    """Run a client's program and answer with its result, or with what was wrong with it."""
+    """Run a client's program and answer with its result, or with what was wrong with it.
+
+    Any other error is the bench's own: the client is told, and it is raised again so that the bench ends with it.
+    """
     try:
         result = run()
-    except BenchError as error:
+    except (InputError, NotEmulated) as error:
         request.refuse(str(error))
         return
+    except Exception as error:
+        request.refuse(f"the bench ends: {error}")
+        raise
     request.reply(json.dumps(result.to_dict()))

@@ -40,8 +40,8 @@ class Exchange(Protocol):
     def commands(self, plc: str, cycle: int, timeout_s: float) -> Commands | None:
         """Wait for a PLC's answer to a cycle."""
 
-    def latest_commands(self, plc: str) -> Commands | None:
-        """Return what a PLC has written since the last call."""
+    def latest_commands(self, plc: str, cycle: int) -> Commands | None:
+        """Return what a PLC has written since the last call; the bench is at `cycle`."""
 
 
 class AttachedPlc:
@@ -73,5 +73,5 @@ class AttachedPlc:
         """Exchange images and commands; None when the PLC does not answer in time."""
         self._publish(cycle, dc_ns, io)
         if not self._lockstep:
-            return self._exchange.latest_commands(self.name) or Commands(self.name, cycle, ())
+            return self._exchange.latest_commands(self.name, cycle) or Commands(self.name, cycle, ())
         return self._exchange.commands(self.name, cycle, self._timeout_s)

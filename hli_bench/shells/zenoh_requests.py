@@ -48,16 +48,23 @@ class Attach(Request):
 
     plc: str
     period_us: int
-    admit: Callable[[str], None]
+    admit: Callable[[str], str]
 
-    def accept(self, *, cycle: int, cycle_us: int, lockstep: bool) -> None:
-        """Take the PLC in: it answers the images from `cycle` on whose number its period in cycles divides."""
-        self.admit(self.plc)
+    def accept(self, *, cycle: int, cycle_us: int, lockstep: bool) -> bool:
+        """Take the PLC in: it answers the images from `cycle` on whose number its period in cycles divides.
+
+        False: it has gone meanwhile, or another took its name; the request is refused then.
+        """
+        reason = self.admit(self.plc)
+        if reason:
+            self.refuse(reason)
+            return False
         self.reply(
             json.dumps(
                 {"cycle": cycle, "cycle_us": cycle_us, "period_us": self.period_us, "lockstep": lockstep}
             )
         )
+        return True
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

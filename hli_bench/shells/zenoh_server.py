@@ -30,6 +30,8 @@ from hli_bench.shells.zenoh_values import Answers, LastValues
 from hli_bench.wire.hli import Commands, Write
 from hli_bench.wire.images import TerminalLayout
 
+STRANGERS: Final = 64
+"""So many names of clients that write without being attached are remembered, each to be told once."""
 REPLIES_A_CALL: Final = 64
 """Replies to reading queries sent per look at the inbox, so that a wide query does not stop the cycle."""
 
@@ -37,7 +39,7 @@ REPLIES_A_CALL: Final = 64
 class HliServer:
     """A router session with the keys of a machine; use it as a context manager and from one thread.
 
-    `late` counts, by PLC, commands that answered an older cycle; `refused` counts writes and requests.
+    `late` counts, by attached PLC, commands that answered an older cycle; `refused` counts writes and requests.
     """
 
     def __init__(
@@ -49,7 +51,8 @@ class HliServer:
         self._values = LastValues(layout, terminals)
         self._packing = CommandsPacking(layout)
         self._mail: dict[str, deque[bytes]] = {}
-        self._strangers: set[str] = set()
+        self._strangers: deque[str] = deque(maxlen=STRANGERS)
+        self._alive_plcs: set[str] = set()
         self._departed: list[str] = []
         self._requests: list[Request] = []
         self._answers: deque[tuple[Any, Answers]] = deque()
@@ -140,25 +143,32 @@ class HliServer:
                     self.late[plc] = self.late.get(plc, 0) + 1
                     overdue += commands.writes
                 else:
-                    self._refuse_commands(plc, f"answers cycle {commands.cycle}, the bench is at {cycle}")
+                    self._refuse_future(commands, cycle)
             remaining = deadline - monotonic()
             if remaining <= 0:
                 break
             self._wait(remaining)
         return Commands(plc, cycle, overdue) if overdue else None
 
-    def latest_commands(self, plc: str) -> Commands | None:
-        """Return all that `plc` wrote since the last call, with the newest cycle it answered, or None."""
+    def latest_commands(self, plc: str, cycle: int) -> Commands | None:
+        """Return all that `plc` wrote since the last call, with the newest cycle it answered, or None.
+
+        An answer to a cycle after `cycle`, where the bench is, is refused.
+        """
         self._drain()
         mail = self._mail.get(plc)
         writes: tuple[Write, ...] = ()
-        cycle = -1
+        newest = -1
         while mail:
             commands = self._unpacked(plc, mail.popleft())
-            if commands is not None:
-                writes += commands.writes
-                cycle = max(cycle, commands.cycle)
-        return Commands(plc, cycle, writes) if cycle >= 0 else None
+            if commands is None:
+                continue
+            if commands.cycle > cycle:
+                self._refuse_future(commands, cycle)
+                continue
+            writes += commands.writes
+            newest = max(newest, commands.cycle)
+        return Commands(plc, newest, writes) if newest >= 0 else None
 
     def departed(self) -> list[str]:
         """Return the PLCs whose session ended or froze since the last call; they are attached no more."""
@@ -169,6 +179,7 @@ class HliServer:
     def detach(self, plc: str) -> None:
         """Let go of a PLC that stalls; when it writes again it is told to attach anew."""
         self._mail.pop(plc, None)
+        self.late.pop(plc, None)
 
     def report(self, refusals: Iterable[Refusal]) -> None:
         """Count refusals and put each in `hli/errors`."""
@@ -206,7 +217,9 @@ class HliServer:
             session.declare_subscriber(
                 f"{machine}/{key}", queued(put, on_sample), allowed_origin=zenoh.Locality.REMOTE
             )
-        session.liveliness().declare_subscriber(f"{machine}/plc/*/alive", queued(put, self._on_alive))
+        session.liveliness().declare_subscriber(
+            f"{machine}/plc/*/alive", queued(put, self._on_alive), history=True
+        )
         for key, on_query in (
             ("hli/layout", self._reader(values.whole_layout)),
             ("hli/terminals", self._reader(values.terminal_layouts)),
@@ -251,7 +264,7 @@ class HliServer:
         if mail is not None:
             mail.append(payload(sample))
         elif plc not in self._strangers:
-            self._strangers.add(plc)
+            self._strangers.append(plc)
             self._refuse_commands(plc, "attach first")
             self._put(f"plc/{plc}/detached", b"")
 
@@ -269,12 +282,23 @@ class HliServer:
     def _refuse_commands(self, plc: str, reason: str) -> None:
         self.report([Refusal(f"plc/{plc}/commands", reason, plc)])
 
+    def _refuse_future(self, commands: Commands, cycle: int) -> None:
+        self._refuse_commands(commands.plc, f"answers cycle {commands.cycle}, the bench is at {cycle}")
+
     def _on_alive(self, sample: zenoh.Sample) -> None:
         plc = _plc(sample)
         if sample.kind == zenoh.SampleKind.PUT:
-            self._strangers.discard(plc)
-        elif self._mail.pop(plc, None) is not None:
+            self._alive_plcs.add(plc)
+            self._no_stranger(plc)
+            return
+        self._alive_plcs.discard(plc)
+        self.late.pop(plc, None)
+        if self._mail.pop(plc, None) is not None:
             self._departed.append(plc)
+
+    def _no_stranger(self, plc: str) -> None:
+        if plc in self._strangers:
+            self._strangers.remove(plc)
 
     def _on_attach(self, query: zenoh.Query) -> None:
         path, plc = self._path(query), _plc(query)
@@ -285,8 +309,7 @@ class HliServer:
             reason = 'JSON {"period_us": whole number} expected'
         if not reason and (period <= 0 or "*" in path):
             reason = "a period above 0 and the name of one PLC expected"
-        if plc in self._mail:
-            reason = f"a PLC called {plc!r} is attached already"
+        reason = reason or self._not_admitted(plc)
         if reason:
             Request(**self._asked(path, query)).refuse(reason)
             return
@@ -294,9 +317,21 @@ class HliServer:
             Attach(**self._asked(path, query), plc=plc, period_us=period, admit=self._admit)
         )
 
-    def _admit(self, plc: str) -> None:
-        self._strangers.discard(plc)
-        self._mail[plc] = deque()
+    def _not_admitted(self, plc: str) -> str:
+        """Return why a PLC of that name cannot take part now, "" when it can."""
+        if plc in self._mail:
+            return f"a PLC called {plc!r} is attached already"
+        if plc not in self._alive_plcs:
+            return f"no liveliness token {self.machine}/plc/{plc}/alive: declare it first, hold it while attached"
+        return ""
+
+    def _admit(self, plc: str) -> str:
+        """Give a PLC its mailbox and return "", or return why not: since it asked it may have gone."""
+        reason = self._not_admitted(plc)
+        if not reason:
+            self._no_stranger(plc)
+            self._mail[plc] = deque()
+        return reason
 
     def _on_member(self, sample: zenoh.Sample) -> None:
         if sample.kind == zenoh.SampleKind.PUT:

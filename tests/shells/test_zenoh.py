@@ -31,7 +31,7 @@ from hli_bench.shells.zenoh_requests import (
     State,
     WriteRequest,
 )
-from hli_bench.shells.zenoh_server import HliServer
+from hli_bench.shells.zenoh_server import STRANGERS, HliServer
 from hli_bench.shells.zenoh_session import connect, queued
 from hli_bench.wire.hli import Commands
 from hli_bench.wire.images import TerminalLayout
@@ -400,14 +400,15 @@ def test_answers_to_older_cycles_count_late_and_to_future_ones_not_at_all(
 
 def test_paced_commands_are_all_that_came_with_the_newest_cycle(bench: SmallBench, elsewhere: Any) -> None:
     element = LAYOUT.element(f"{TIME}/command_w").id
-    messages = [struct.pack("<QHq", cycle, element, cycle) for cycle in (1, 2)]
+    messages = [struct.pack("<QHq", cycle, element, cycle) for cycle in (1, 9, 2)]
     future = elsewhere(send_commands, bench.endpoint, "p", messages, attach=True)
     bench.serve(lambda: any(isinstance(request, State) for request in bench.seen))
-    commands = bench.server.latest_commands("p")
+    commands = bench.server.latest_commands("p", 2)
     future.result()
     assert commands is not None
     assert (commands.cycle, [write.value for write in commands.writes]) == (2, [1, 2])
-    assert bench.server.latest_commands("p") is None
+    assert bench.server.latest_commands("p", 2) is None
+    assert bench.server.refused == 1
 
 
 def test_malformed_commands_are_refused_and_still_answer_their_cycle(
@@ -434,6 +435,53 @@ def test_an_attach_that_makes_no_sense_is_refused(bench: SmallBench, elsewhere: 
     ((_, reason, _),) = ask(bench, elsewhere, plain_get, "demo/plc/p/attach", question.encode())
     assert b"expected" in reason
     assert bench.server.attached == []
+
+
+def test_an_attach_without_a_living_token_is_refused(bench: SmallBench, elsewhere: Any) -> None:
+    ((_, reason, _),) = ask(bench, elsewhere, plain_get, "demo/plc/p/attach", b'{"period_us": 1000}')
+    assert b"no liveliness token demo/plc/p/alive" in reason
+    assert bench.server.attached == []
+
+
+def attach_and_go(endpoint: str) -> str:
+    """Attach and, before there is an answer, end; return the answer."""
+    answers: SimpleQueue[Any] = SimpleQueue()
+    with connect(endpoint) as session:
+        token = session.liveliness().declare_token("demo/plc/brief/alive")
+        session.get("demo/plc/brief/attach", answers.put, payload='{"period_us": 1000}', timeout=10.0)
+        token.undeclare()
+        list(session.get("demo/hli/errors", timeout=10.0))
+        reply = answers.get(timeout=PATIENCE_S)
+        return str(reply.err.payload.to_string()) if reply.ok is None else "taken in"
+
+
+def test_a_plc_that_goes_while_it_attaches_is_not_taken_in(bench: SmallBench, elsewhere: Any) -> None:
+    """Both come in one look at the inbox; afterwards nobody would tell the bench that the PLC has gone."""
+    future = elsewhere(attach_and_go, bench.endpoint)
+    requests: list[Request] = []
+    while not any(isinstance(request, Attach) for request in requests):
+        requests = bench.server.wait_request(PATIENCE_S)
+    while bench.server._alive_plcs:
+        requests += bench.server.wait_request(0.05)
+    for request in requests:
+        bench.answer(request)
+    bench.serve(future.done)
+    assert "no liveliness token" in future.result()
+    assert bench.server.attached == []
+    assert bench.server.departed() == []
+
+
+def many_strangers(endpoint: str) -> None:
+    with connect(endpoint) as session:
+        for number in range(3 * STRANGERS):
+            session.put(f"demo/plc/s{number}/commands", struct.pack("<Q", 1))
+        list(session.get("demo/cnc/state", timeout=10.0))
+
+
+def test_names_that_clients_choose_are_not_gathered(bench: SmallBench, elsewhere: Any) -> None:
+    ask(bench, elsewhere, many_strangers)
+    assert bench.server.refused == 3 * STRANGERS
+    assert len(bench.server._strangers) == STRANGERS
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ import numpy as np
 from hli_bench.base.errors import EnvironmentLacks
 from hli_bench.bench import build, telegraph
 from hli_bench.bench.config import load
-from hli_bench.bench.telegraph import Numbers, Order, Reply
+from hli_bench.bench.telegraph import Numbers, Order
 from hli_bench.laws.rows import AXIS
 from hli_bench.laws.stride import exchange_in, exchange_out
 from hli_bench.runtime.machine_side import SYNC, MachineSide
@@ -56,7 +56,7 @@ class Drives:
             elif self._exchange(kind, cycle, body):
                 self._answer(cycle, numbers=self._numbers.actual())
             else:
-                self._pipe.send(telegraph.reply(Reply.FAULT))
+                self._pipe.send(telegraph.reply(telegraph.FAULT))
                 continue
             if self._bus is None:
                 # The targets for the next cycle are known since the last SYNC: move on while the kernel works.
@@ -98,11 +98,11 @@ class Drives:
     def _answer(self, cycle: int, frames: Sequence[CanFrame] = (), *, numbers: bytes = b"") -> None:
         """Send numbers or frames (a CAN bus carries them itself), what is due by time, the edges of this cycle."""
         side = self._side
-        state, due = Reply(0), b""
+        state, due = telegraph.LOUD, b""
         if self._bus is None:
             due = telegraph.frames(side.timers(cycle))
             if side.quiet(cycle + 1) > 0:
-                state = Reply.QUIET
+                state = telegraph.QUIET
         else:
             for frame in frames:
                 self._bus.send(frame)

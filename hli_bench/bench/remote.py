@@ -11,7 +11,7 @@ import numpy as np
 from hli_bench.base.errors import EnvironmentLacks, InputError, NotEmulated
 from hli_bench.bench import telegraph
 from hli_bench.bench.config import MachineConfig
-from hli_bench.bench.telegraph import Numbers, Order, Reply
+from hli_bench.bench.telegraph import Numbers, Order
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.laws.rows import MachineRows, Rows
 from hli_bench.plant.build import signal_names
@@ -135,7 +135,7 @@ class RemoteMachine:
         """Pass the telegrams of a SYNC by numbers; False: a drive has a fault, frames have to pass."""
         answer = self._drives.ask(telegraph.order(kind, cycle, self._numbers.command()))
         state, numbers, _, due, edges = telegraph.read_reply(answer)
-        if state & Reply.FAULT:
+        if state == telegraph.FAULT:
             return False
         self._numbers.take_actual(numbers)
         self._take(state, due, edges, cycle)
@@ -162,16 +162,16 @@ class RemoteMachine:
         edges, self._edges = self._edges, []
         return edges
 
-    def _frames(self, answer: tuple[Reply, bytes, bytes, bytes, bytes], cycle: int) -> list[CanFrame]:
+    def _frames(self, answer: tuple[int, bytes, bytes, bytes, bytes], cycle: int) -> list[CanFrame]:
         """Take the drives' answer; over a bus the frames themselves come from there."""
         state, _, packed, due, edges = answer
         self._take(state, due, edges, cycle)
         announced = telegraph.read_frames(packed)
         return announced if self._bus is None else self._from_bus(announced)
 
-    def _take(self, state: Reply, due: bytes, edges: bytes, cycle: int) -> None:
+    def _take(self, state: int, due: bytes, edges: bytes, cycle: int) -> None:
         """Take the rest of the drives' answer; tell the terminals, who work while the kernel does."""
-        self._quiet = bool(state & Reply.QUIET)
+        self._quiet = state == telegraph.QUIET
         if due:
             self._due += telegraph.read_frames(due)
         if edges:

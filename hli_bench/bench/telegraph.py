@@ -1,7 +1,7 @@
 """What the processes of a bench say to one another in each cycle, as bytes."""
 
 from collections.abc import Iterable, Sequence
-from enum import IntEnum, IntFlag
+from enum import IntEnum
 from struct import Struct
 from typing import Any, Final
 
@@ -83,13 +83,12 @@ class Order(IntEnum):
     """Only numbers pass, control words are as they were."""
 
 
-class Reply(IntFlag):
-    """What the drives say of a cycle."""
-
-    QUIET = 1
-    """The next cycle needs no frames from their side."""
-    FAULT = 2
-    """A drive has an error: this SYNC needs frames. The machine has moved, nothing else has happened yet."""
+LOUD: Final = 0
+"""The drives say: the next cycle needs frames."""
+QUIET: Final = 1
+"""The next cycle needs no frames from their side."""
+FAULT: Final = 2
+"""A drive has an error: this SYNC needs frames. The machine has moved, nothing else has happened yet."""
 
 
 def order(kind: Order, cycle: int, body: bytes = b"") -> bytes:
@@ -104,20 +103,20 @@ def read_order(message: bytes) -> tuple[Order, int, bytes]:
 
 
 def reply(
-    state: Reply, numbers: bytes = b"", frames: bytes = b"", due: bytes = b"", edges: bytes = b""
+    state: int, numbers: bytes = b"", frames: bytes = b"", due: bytes = b"", edges: bytes = b""
 ) -> bytes:
     """Return the drives' answer to an order: numbers or frames of the SYNC, frames due by time, edges."""
     return _REPLY.pack(state, len(numbers), len(frames), len(due)) + numbers + frames + due + edges
 
 
-def read_reply(message: bytes) -> tuple[Reply, bytes, bytes, bytes, bytes]:
+def read_reply(message: bytes) -> tuple[int, bytes, bytes, bytes, bytes]:
     """Return state, numbers, frames, frames due by time, edges."""
     state, numbers, frames, due = _REPLY.unpack_from(message)
     first = _REPLY.size + numbers
     second = first + frames
     third = second + due
     return (
-        Reply(state),
+        state,
         message[_REPLY.size : first],
         message[first:second],
         message[second:third],

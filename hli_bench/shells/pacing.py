@@ -8,12 +8,12 @@ from typing import Any, Final
 from hli_bench.base.time import NS_PER_US
 
 LEAST_SPIN_NS: Final = 10 * NS_PER_US
-MOST_SPIN_NS: Final = 150 * NS_PER_US
+MOST_SPIN_NS: Final = 100 * NS_PER_US
 """The last stretch before a deadline is spun, because a sleep ends late; it is never longer than this."""
-SPIN_UP_NS: Final = 3960
+SPIN_UP_NS: Final = 1960
 SPIN_DOWN_NS: Final = 40
-"""The spin grows by the first when a sleep outlasted it, else shrinks by the second: it settles where one sleep in a
-hundred outlasts it. Sleeps that no spin could have covered do not count (decided here)."""
+"""The spin grows by the first when a sleep outlasted it, else shrinks by the second: it settles where one sleep in
+fifty outlasts it. Sleeps that no spin could have covered do not count (decided here)."""
 BINS: Final = 22
 """Below 1 us, then a bin for each power of two; the last one begins at about a second and is open."""
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from time import monotonic
 from typing import Final, Self
 
 from hli_bench.base.errors import BenchError, EnvironmentLacks
@@ -16,6 +17,24 @@ from hli_bench.shells import plc_process
 _LENGTH: Final = struct.Struct("<I")
 END_S: Final = 5.0
 """Time that a process gets to end by itself."""
+ANSWER_S: Final = 30.0
+"""Time in which a worker must answer; a cycle takes a millisecond (decided here)."""
+START_S: Final = 180.0
+"""The same for its first answer: it loads the machine and may compile the laws before (decided here)."""
+
+
+class Deadline:
+    """A moment `seconds` from now on."""
+
+    __slots__ = ("_at",)
+
+    def __init__(self, seconds: float) -> None:
+        self._at = monotonic() + seconds
+
+    @property
+    def over(self) -> bool:
+        """The moment has passed."""
+        return monotonic() >= self._at
 
 
 def free_endpoint() -> str:
@@ -33,7 +52,8 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
             process.wait(END_S)
             return
         process.kill()
-    process.wait()
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        process.wait(END_S)
 
 
 class PlcProcess:
@@ -58,25 +78,36 @@ class PlcProcess:
 
 
 class Pipe:
-    """Messages with a length in front, over one end of a socket pair."""
+    """Messages with a length in front, over one end of a socket pair. It waits for ever unless `limit` was called."""
 
     def __init__(self, end: socket.socket) -> None:
         self._end = end
         self._file = end.makefile("rb")
 
     def send(self, message: bytes) -> None:
-        """Send one message. Raises EnvironmentLacks when the other side has gone."""
+        """Send one message. Raises EnvironmentLacks when the other side has gone, TimeoutError when it is stuck."""
         try:
             self._end.sendall(_LENGTH.pack(len(message)) + message)
+        except TimeoutError:
+            raise
         except OSError as error:
             raise EnvironmentLacks("a process of the bench has gone") from error
 
+    def limit(self, seconds: float) -> None:
+        """Wait at most so long from now on; after a TimeoutError the pipe is of no use any more."""
+        self._end.settimeout(seconds)
+
     def receive(self) -> bytes:
-        """Wait for one message. Raises EOFError when the other side has gone."""
+        """Wait for one message. Raises EOFError when the other side has gone, TimeoutError when it is stuck."""
         try:
             head = self._file.read(_LENGTH.size)
         except ConnectionError:
             head = b""
+        except TimeoutError:
+            raise
+        except OSError as error:
+            # The file object says so of every reading after one that took too long.
+            raise TimeoutError from error
         if len(head) < _LENGTH.size:
             raise EOFError
         return self._file.read(_LENGTH.unpack(head)[0])
@@ -93,7 +124,8 @@ class Worker:
     It has a process group of its own: Ctrl-C is for the process that started it.
     """
 
-    def __init__(self, module: str, arguments: Sequence[str]) -> None:
+    def __init__(self, module: str, arguments: Sequence[str], answer_s: float = ANSWER_S) -> None:
+        """Start it; it must answer within `answer_s`, the first time within START_S."""
         ours, theirs = socket.socketpair()
         command = [sys.executable, "-m", module, str(theirs.fileno()), *arguments]
         self._process = subprocess.Popen(
@@ -101,20 +133,47 @@ class Worker:
         )
         theirs.close()
         self.pipe = Pipe(ours)
+        self.pipe.limit(START_S)
         self._name = module
+        self._answer_s = answer_s
+        self._started = False
 
     def ask(self, message: bytes) -> bytes:
-        """Send a message and wait for the answer. Raises BenchError when the process has ended.
+        """Send a message and wait for the answer. Raises BenchError when the process has ended or is stuck.
 
         What it ended of stands on standard error; when that was bad input the error says so by its exit status.
         """
+        self.tell(message)
+        return self.answer()
+
+    def tell(self, message: bytes) -> None:
+        """Send a message; `answer` takes the answer later. Raises as `ask` does."""
         try:
             self.pipe.send(message)
-            return self.pipe.receive()
-        except (EOFError, EnvironmentLacks) as error:
-            status = self._process.wait()
-            kind = BenchError if status == BenchError.exit_status else EnvironmentLacks
-            raise kind(f"process {self._name} has ended with status {status}") from error
+        except (EnvironmentLacks, TimeoutError) as error:
+            raise self._failure(error) from error
+
+    def answer(self) -> bytes:
+        """Wait for the answer to what was told. Raises as `ask` does."""
+        try:
+            message = self.pipe.receive()
+        except (EOFError, TimeoutError) as error:
+            raise self._failure(error) from error
+        if not self._started:
+            self._started = True
+            self.pipe.limit(self._answer_s)
+        return message
+
+    def _failure(self, error: Exception) -> BenchError:
+        """Return what has become of the process."""
+        if isinstance(error, TimeoutError):
+            return EnvironmentLacks(f"process {self._name} does not answer: it is stuck or stopped")
+        try:
+            status = self._process.wait(END_S)
+        except subprocess.TimeoutExpired:
+            return EnvironmentLacks(f"process {self._name} has closed its pipe and does not end")
+        kind = BenchError if status == BenchError.exit_status else EnvironmentLacks
+        return kind(f"process {self._name} has ended with status {status}")
 
     def close(self) -> None:
         """End the process."""

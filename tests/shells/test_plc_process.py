@@ -6,14 +6,18 @@ import signal
 import struct
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError, NotEmulated
 from hli_bench.base.loading import data_file
+from hli_bench.bench.door import result_reply
 from hli_bench.shells.plc_process import main
-from hli_bench.shells.processes import PlcProcess
+from hli_bench.shells.processes import Deadline, PlcProcess, Worker
+from hli_bench.shells.zenoh_requests import RunProgram
 from hli_bench.shells.zenoh_session import connect
 
 UNIT = "ax/3/lr_mc_control/probing_signal"
@@ -266,3 +270,41 @@ def test_a_period_that_is_given_replaces_the_scripts_own(serve: Any) -> None:
         bench.settled(lambda state: len(state["plcs"]) == 2)
         periods = {plc["name"]: plc["period_cycles"] for plc in bench.state()["plcs"]}
     assert periods == {"given": 3, "own": 1}
+
+
+def test_a_worker_that_is_stuck_is_named_and_ended() -> None:
+    worker = Worker("hli_bench.bench.terminals_process", ["demo", "{}"])
+    worker.pipe.limit(0.2)
+    os.kill(worker._process.pid, signal.SIGSTOP)
+    try:
+        for _ in range(2):
+            with pytest.raises(EnvironmentLacks, match=r"terminals_process does not answer"):
+                worker.ask(b"x")
+    finally:
+        worker._process.kill()
+        worker.close()
+
+
+def test_errors_of_the_bench_end_it_and_those_of_a_program_do_not() -> None:
+    told: list[str] = []
+    request = RunProgram(key="demo/cnc/run", report=lambda of: told.append(of[0].reason), text="", name="")
+
+    def failing(error: Exception) -> Any:
+        raise error
+
+    result_reply(lambda: failing(InputError("no word")), request)
+    result_reply(lambda: failing(NotEmulated("G33")), request)
+    for error in (EnvironmentLacks("a worker has ended"), BenchError("broken")):
+        with pytest.raises(type(error)):
+            result_reply(partial(failing, error), request)
+    assert told == [
+        "no word",
+        "NotEmulated: G33",
+        "the bench ends: a worker has ended",
+        "the bench ends: broken",
+    ]
+
+
+def test_a_deadline_passes() -> None:
+    assert Deadline(0).over
+    assert not Deadline(1000).over

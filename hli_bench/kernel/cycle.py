@@ -15,11 +15,12 @@ from hli_bench.kernel.drive_manager.objects import ObjectChannel
 from hli_bench.kernel.drive_manager.telegram import ActualTelegrams, command_frames
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.records import Emitted
-from hli_bench.kernel.sequence import Sequence
+from hli_bench.kernel.sequence import END, Sequence
 from hli_bench.kernel.setup import KernelSetup
 from hli_bench.laws.publish import publish_positions
 from hli_bench.laws.rows import FOLLOW, KernelRows
 from hli_bench.manual.errors import hli as hli_errors
+from hli_bench.protocols.canopen.cia402 import STATES
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
 from hli_bench.protocols.hli.image import Image
 from hli_bench.protocols.hli.layout import layout_of
@@ -126,14 +127,24 @@ class Kernel:
         return emitted
 
     def reset(self) -> None:
-        """CNC reset: end the program, clear errors, bring stopped drives back into operation."""
+        """CNC reset: end the program, clear errors, bring stopped drives back into operation.
+
+        A drive that is being configured begins anew; one further on its way into operation goes on, unless it has
+        a fault.
+        """
         self.channel.abort()
         self._objects.clear()
         self.core.failed = False
         tripped = self._monitoring.take_tripped()
         for axis in self.setup.axes:
             self.core.show(axis.index, "head/error_r", False)
-            if self.core.row(axis.index)["mode"] == FOLLOW:
+            under_way = self._starting[axis.index].phase if axis.index in self._starting else END
+            mask, fault = STATES["fault"]
+            if under_way == "configure":
+                self._begin_drive(axis.index, "configure")
+            elif under_way != END and self.core.row(axis.index)["statusword"] & mask != fault:
+                continue
+            elif self.core.row(axis.index)["mode"] == FOLLOW:
                 self._begin_drive(axis.index, "reset")
             elif axis.index in tripped:
                 self._monitoring.switch_off(axis.index)

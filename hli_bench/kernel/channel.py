@@ -35,6 +35,7 @@ from hli_bench.manual.axis.words import Edge, ProbingSignal
 from hli_bench.manual.errors import path_interpolator as errors
 from hli_bench.manual.errors import position_controller as position_errors
 
+_NOWHERE = Source("", 0)
 Item = Block | Flush | CncError | Idle
 Items = Generator[Item, MachineState | None, None]
 READY_CYCLES = 500
@@ -70,7 +71,7 @@ class Channel:
         self._delivered: Counter[AxisIndex] = Counter()
         self.measured: list[tuple[MeasuredValue, float]] = []
         """Every value this program has measured, with its V.A.MEAS.PCS.VALUE in mm."""
-        self._source = Source("", 0)
+        self._source = _NOWHERE
         self._segment_source: dict[int, Source] = {}
         self.running = False
         self.completed = False
@@ -142,14 +143,18 @@ class Channel:
             self._wake.append(core.watches.watch(cycle_reached(begin_by)))
             return False
         core.take_back()
+        self._monitoring.rearm()
         core.preparation.synchronise()
         self._begin_by = None
         return True
 
     def _proceed(self) -> bool:
         """Do the next thing; False when it has to wait."""
-        if self._begin_by is not None and not self._may_begin(self._begin_by):
-            return False
+        if self._begin_by is not None:
+            if not self._may_begin(self._begin_by):
+                return False
+            if not self._in_operation(_NOWHERE, [axis.index for axis in self._core.setup.axes]):
+                return True
         if self._activity is not None:
             if not self._activity.step():
                 return False

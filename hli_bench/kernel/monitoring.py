@@ -29,6 +29,7 @@ class Monitoring:
 
     def switch_on(self, axis: AxisIndex) -> None:
         """Begin to watch an axis whose drive is in operation."""
+        self.switch_off(axis)
         self._fault[axis] = self._core.watches.watch(statusword(axis, *STATES["fault"]))
         self.lag(axis, on=True)
 
@@ -51,6 +52,11 @@ class Monitoring:
             self._core.watches.watch(lag_over(axis, gear.slep_max, delay)),
             self._core.watches.watch(standstill_lag_over(axis, gear.slep_min, max(delay, STANDSTILL_CYCLES))),
         )
+
+    def rearm(self) -> None:
+        """Watch the position lag again where it has tripped: no program runs without."""
+        for axis in self._tripped:
+            self.lag(axis, on=True)
 
     def take_tripped(self) -> list[AxisIndex]:
         """Return the axes that have left their lag limits since the last call."""

@@ -318,7 +318,7 @@ def test_drive_out_of_operation_may_not_home(make, errors):
         "#DRIVE WR SYN [AX=X KEY=MON_WINDOW VAL=10000 WAIT]\nG01 X20 F6000\nM30\n"
     )
 
-    assert errors(home(bench)) == [(70101, "X", "N10")]
+    assert errors(home(bench)) == [(70101, "X", "")]
 
 
 @pytest.mark.req("H-049")

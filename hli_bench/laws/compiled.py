@@ -1,11 +1,16 @@
 """How a law is compiled: numba, cached on disk, without fast-math, so that plain Python gives the same bits."""
 
 from collections.abc import Callable, Mapping
+from hashlib import sha256
+from pathlib import Path
 from typing import Any, Final, TypeVar, cast
 
 import numba
 
 Law = TypeVar("Law", bound=Callable[..., Any])
+_TEXT: Final = sha256(
+    b"".join(file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py")))
+).hexdigest()
 _OPTIONS: Final[Mapping[str, Any]] = {"fastmath": False, "error_model": "numpy"}
 
 
@@ -19,4 +24,17 @@ def law(function: Law) -> Law:
         compiled: Any = numba.njit(cache=True, **_OPTIONS)(function)
     except RuntimeError:
         compiled = numba.njit(**_OPTIONS)(function)
+    else:
+        _stamp(compiled)
     return cast("Law", compiled)
+
+
+def _stamp(compiled: Any) -> None:
+    """Let the cached code of a law count for as long as the text of all laws is the same.
+
+    numba looks at the date of the one file only: code of a law that calls into a changed file would stay,
+    and a fresh install of the same text would be compiled anew.
+    """
+    cache: Any = getattr(compiled, "_cache", None)
+    if cache is not None and hasattr(cache, "_cache_file"):
+        cache._source_stamp = cache._cache_file._source_stamp = _TEXT  # noqa: SLF001 numba has no public way

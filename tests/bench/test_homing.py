@@ -64,7 +64,6 @@ def phases(recorder, number: int) -> list[float]:
 @pytest.mark.req(
     "H-001",
     "H-009",
-    "H-018",
     "H-020",
     "H-031",
     "H-036",
@@ -167,7 +166,7 @@ def test_axis_on_the_cam_begins_with_phase_two(make, recorder):
     assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=2e-5)
 
 
-@pytest.mark.req("H-047")
+@pytest.mark.req("H-047", "H-196")
 @pytest.mark.parametrize(("fast", "speed"), [(0, SLOW_UM), (1, FAST_UM)])
 def test_way_off_the_cam_is_fast_or_slow(make, recorder, fast, speed):
     bench = make(axis("X", -100.0, **{"kenngr.fast_from_cam": fast}), recorder=recorder)
@@ -190,7 +189,7 @@ def test_positive_homing_direction(make, recorder):
     assert bench.position_mm("X") > 55.0
 
 
-@pytest.mark.req("H-018", "H-031")
+@pytest.mark.req("H-031")
 def test_normally_closed_cam_is_told_by_its_level(make, recorder):
     """P-AXIS-00038 = 0: the signal is there off the cam. The switch closes everywhere but below -50."""
     settings = axis("X", 0.0, **{"lr_hw[0].cam_level": 0})
@@ -204,7 +203,7 @@ def test_normally_closed_cam_is_told_by_its_level(make, recorder):
     assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=2e-5)
 
 
-@pytest.mark.req("H-018", "H-044")
+@pytest.mark.req("H-044")
 def test_cam_signal_goes_over_terminal_plc_and_hli(make, recorder):
     """The cam's edge, then the PLC's write of reference_cam at its next tick, then the CNC brakes."""
     bench = make(axis("X", 0.0), recorder=recorder)
@@ -252,7 +251,7 @@ def test_equal_ranks_at_the_same_time(make, recorder):
     assert {one.axis for one in result.homing} == {"X", "Y"}
 
 
-@pytest.mark.req("H-006")
+@pytest.mark.req("H-006", "H-162")
 def test_homing_uses_the_linear_slope_of_p_axis_00285(make, recorder):
     bench = make(axis("X", 0.0, **{"getriebe[0].a_ref": 400}), recorder=recorder)
     home(bench)
@@ -263,7 +262,23 @@ def test_homing_uses_the_linear_slope_of_p_axis_00285(make, recorder):
     assert np.abs(rate).max() < 420.0
 
 
-@pytest.mark.req("H-002", "H-004", "H-008", "H-022", "H-027")
+@pytest.mark.req("H-163")
+def test_homing_without_its_own_acceleration_takes_the_smaller_of_rapid_traverse(make, recorder):
+    """P-AXIS-00285 = 0: P-AXIS-00005 or 00006, whichever is less."""
+    slope = {
+        "getriebe[0].lslope_profil.a_grenz_stufe_1": 900,
+        "getriebe[0].lslope_profil.a_grenz_stufe_2": 600,
+    }
+    bench = make(axis("X", 0.0, **{"getriebe[0].a_ref": 0}, **slope), recorder=recorder)
+    assert home(bench).completed
+    target = recorder.column("target", X).astype(np.float64) * PITCH_MM / 1_048_576
+    rate = np.diff(target, 2)[25:] / 1e-6
+
+    assert np.percentile(np.abs(rate[np.abs(rate) > 300]), 50) == pytest.approx(600.0, abs=12.0)
+    assert np.abs(rate).max() < 620.0
+
+
+@pytest.mark.req("H-002", "H-004", "H-008")
 def test_incremental_axis_measures_the_truth_after_homing(make):
     """Before homing its zero is where it was switched on; after it the face is where it is."""
     settings = axis("Z", 30.0) | {
@@ -380,7 +395,7 @@ def test_longest_way_of_a_rotary_axis(make, errors, longest, degrees):
     assert degrees < abs(bench.position_mm("A")) < degrees + 6.0
 
 
-@pytest.mark.req("H-016")
+@pytest.mark.req("H-016", "H-137")
 def test_late_activation_takes_the_next_zero_pulse(make):
     """P-AXIS-00494: 6 mm behind the cam the pulse at 5 mm is over, the next is a turn further."""
     settings = axis("X", 0.0, **{"kenngr.shift_offset_zero_pulse_activation": 60_000})

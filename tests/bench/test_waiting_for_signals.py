@@ -441,7 +441,7 @@ def test_too_many_axes_for_the_type_is_error_50061(make, kind, words, most):
     assert list(error.values.values())[1:] == [most, kind]
 
 
-@pytest.mark.req("M-034", "M-213", "M-214", "M-215")
+@pytest.mark.req("M-214", "M-215")
 @pytest.mark.parametrize("kind", [1, 4])
 def test_stroke_of_the_probe_limits_the_feed(make, recorder, kind):
     """Stroke 1 mm, deceleration 2000 mm/s2: 63 mm/s at most, with type 4 and not with type 1."""

@@ -137,7 +137,6 @@ def test_probing_offset() -> None:
     assert [effective.effective_probing_offset(old, kind) for kind in (1, 2, 3, 7)] == [0, 7, 0, 0]
 
 
-@pytest.mark.req("H-162", "H-163", "H-164")
 def test_homing_dynamics() -> None:
     slope = {
         "getriebe[0].lslope_profil.a_grenz_stufe_1": 900,

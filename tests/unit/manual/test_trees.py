@@ -59,7 +59,6 @@ def test_flatten_and_converted() -> None:
     assert (axis.getriebe[0].vb_refmax, axis.getriebe[1].kv) == (5, 7)
 
 
-@pytest.mark.req("H-214")
 def test_default_homing_type_follows_the_drive_type() -> None:
     for drive_type in (1, 3, 4, 5, 6, 7, 8):
         values = converted(AxisParams, {"kenngr.antr_typ": drive_type})

@@ -21,7 +21,7 @@ from hli_bench.plc import load as load_script
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, LocalLink, Observer
 from hli_bench.shells.pacing import RealPace, Stopwatch
-from hli_bench.shells.processes import PlcProcess, free_endpoint
+from hli_bench.shells.processes import Deadline, PlcProcess, free_endpoint
 from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 from hli_bench.shells.zenoh_server import HliServer
 
@@ -30,8 +30,8 @@ START_UP_CYCLES: Final = 2000
 FOREVER: Final = 1 << 62
 IDLE_S: Final = 0.2
 """Longest wait for a client while time stands still."""
-ATTACH_WAITS: Final = 150
-"""A PLC process gets so many waits to attach."""
+ATTACH_S: Final = 30.0
+"""Wall time in which a PLC process must have attached."""
 
 OnRecord = Callable[[Emitted], None]
 
@@ -64,6 +64,7 @@ class Bench:
         with ExitStack() as stack:
             self._closing = stack
             self._realtime = realtime
+            self._remote: RemoteMachine | None = None
             self.kernel = build.kernel(self.config)
             self.engine = self._engine(machine, settings or {}, can, processes=processes)
             self.engine.observers += observers
@@ -72,7 +73,7 @@ class Bench:
             self._endpoint = zenoh
             self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
             self._garbage = Garbage()
-            self._pace = RealPace(self.config.cycle_ns, idle=self._garbage.idle) if pace == "real" else None
+            self._pace = RealPace(self.config.cycle_ns, idle=self._idle) if pace == "real" else None
             self.pace_notes: list[str] = []
             """What the operating system gave for `realtime`, and what not; filled by `start_up`."""
             self._plcs = plc_configs(self.config, plc)
@@ -231,7 +232,14 @@ class Bench:
             RemoteMachine(self.config, machine, settings, can, rows, realtime=self._realtime)
         )
         self.terminal_layouts = build.terminal_layouts(self.config)
+        self._remote = remote
         return RemoteEngine(self.kernel, remote)
+
+    def _idle(self, rest_ns: int) -> None:
+        """Use the time that a paced bench has left before its next cycle."""
+        self._garbage.idle(rest_ns)
+        if self._remote is not None:
+            self._remote.look()
 
     def _keep_calm(self) -> None:
         """Ask Python and the operating system not to hold a cycle, until the bench is closed."""
@@ -262,10 +270,12 @@ class Bench:
             self._endpoint = free_endpoint()
             self._door = self._open_door(self._endpoint, lockstep=self._pace is None)
         assert self._endpoint is not None
-        process = self._closing.enter_context(PlcProcess(plc.script, self._endpoint, plc.name))
-        before = len(self.engine.plcs)
-        for _ in range(ATTACH_WAITS):
-            if len(self.engine.plcs) > before:
+        process = self._closing.enter_context(
+            PlcProcess(plc.script, self._endpoint, plc.name, plc.period_us)
+        )
+        deadline = Deadline(ATTACH_S)
+        while not deadline.over:
+            if self._door.attached(plc.name):
                 return
             process.check()
             self._door.wait(IDLE_S)

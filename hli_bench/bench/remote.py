@@ -50,20 +50,29 @@ class RemoteEngine(Engine):
 
     def _stretch(self, first: int, limit: int) -> int:
         """Return that numbers or frames pass in the next cycle; no cycle is strided over."""
+        if self._machine.ahead is not None:
+            return WORDS
         return FRAMES if self._orders or not self._machine.quiet(first) else WORDS
 
     def _exchange(self, cycle: int) -> None:
         """Pass numbers; frames after all when a drive has raised a fault."""
-        if self._new_words:
+        if self._new_words and self._machine.ahead is None:
             super()._exchange(cycle)
         elif not self._machine.numbers(Order.NUMBERS, cycle):
             self._telegrams(cycle)
+
+    def _complete(self, first: int, count: int) -> None:
+        """Complete a cycle; when no more than targets pass in the next one, they are sent at once."""
+        super()._complete(first, count)
+        if not self._orders and not self._new_words and self._machine.quiet(self.cycle + 1):
+            self._machine.send_ahead(self.cycle + 1)
 
 
 class RemoteMachine:
     """How the kernel's process reaches the others: one round trip to each in every cycle.
 
-    The terminals' answer is taken when somebody looks at the images, at the latest in the next cycle.
+    The terminals' answer is taken when somebody looks at the images, at the latest in the next cycle. What is sent
+    ahead is answered while the kernel waits for its next cycle, and counts in that cycle.
     """
 
     def __init__(
@@ -85,8 +94,12 @@ class RemoteMachine:
         self._signals = signal_names([axis.name for axis in config.axes])
         self._edges: list[Edge] = []
         self._images: dict[str, bytes] = {}
-        self._asked = False
-        """The terminals owe an answer."""
+        self._asked: int | None = None
+        """The cycle for which the terminals owe an answer."""
+        self.ahead: int | None = None
+        """The cycle whose numbers have been sent ahead."""
+        self._early: bytes | None = None
+        """The drives' answer to them, if it has been taken already."""
         self._quiet = False
         self._numbers = Numbers(axis)
         self._due: list[CanFrame] = []
@@ -133,13 +146,31 @@ class RemoteMachine:
 
     def numbers(self, kind: Order, cycle: int) -> bool:
         """Pass the telegrams of a SYNC by numbers; False: a drive has a fault, frames have to pass."""
-        answer = self._drives.ask(telegraph.order(kind, cycle, self._numbers.command()))
+        if self.ahead is not None:
+            self.look()
+            answer, self._early, self.ahead = self._early or b"", None, None
+        else:
+            answer = self._drives.ask(telegraph.order(kind, cycle, self._numbers.command()))
         state, numbers, _, due, edges = telegraph.read_reply(answer)
         if state == telegraph.FAULT:
             return False
         self._numbers.take_actual(numbers)
         self._take(state, due, edges, cycle)
         return True
+
+    def send_ahead(self, cycle: int) -> None:
+        """Send the targets for the next SYNC."""
+        self.ahead = cycle
+        _tell(self._drives, telegraph.order(Order.NUMBERS, cycle, self._numbers.command()))
+
+    def look(self) -> None:
+        """Use an idle gap: take the drives' answer to what was sent ahead, and let the terminals work on it."""
+        if self.ahead is None or self._early is not None:
+            return
+        self._early = _answer_of(self._drives)
+        state, _, _, _, edges = telegraph.read_reply(self._early)
+        if state != telegraph.FAULT:
+            self._ask_terminals(self.ahead, edges)
 
     def timers(self, cycle: int) -> list[CanFrame]:
         """Return what the drives sent by time in this cycle."""
@@ -154,7 +185,8 @@ class RemoteMachine:
 
     def images(self, cycle: int) -> Mapping[str, bytes]:
         """Return the process images by terminal."""
-        self._take_images()
+        if self._asked is not None and self._asked <= cycle:
+            self._take_images()
         return self._images
 
     def take_edges(self) -> list[Edge]:
@@ -170,14 +202,19 @@ class RemoteMachine:
         return announced if self._bus is None else self._from_bus(announced)
 
     def _take(self, state: int, due: bytes, edges: bytes, cycle: int) -> None:
-        """Take the rest of the drives' answer; tell the terminals, who work while the kernel does."""
+        """Take the rest of the drives' answer."""
         self._quiet = state == telegraph.QUIET
         if due:
             self._due += telegraph.read_frames(due)
         if edges:
             self._edges += telegraph.read_edges(edges, self._signals)
+        if self._asked != cycle:
+            self._ask_terminals(cycle, edges)
+
+    def _ask_terminals(self, cycle: int, edges: bytes) -> None:
+        """Tell the terminals the edges of a cycle; they work while the kernel does something else."""
         self._take_images()
-        self._asked = True
+        self._asked = cycle
         _tell(self._terminals, telegraph.order(Order.CYCLE, cycle, edges))
 
     def _from_bus(self, announced: Sequence[CanFrame]) -> list[CanFrame]:
@@ -197,9 +234,9 @@ class RemoteMachine:
 
     def _take_images(self) -> None:
         """Take the answer that the terminals owe."""
-        if not self._asked:
+        if self._asked is None:
             return
-        self._asked = False
+        self._asked = None
         images = telegraph.read_parts(_answer_of(self._terminals))
         self._images = {
             layout.name: image for layout, image in zip(self.terminal_layouts, images, strict=True)

@@ -38,7 +38,9 @@ from hli_bench.wire.images import TerminalLayout
 
 AXES = [(number, name, "linear") for number, name in enumerate(("X", "Y", "Z", "X2", "A", "B", "S"), 1)]
 LAYOUT = Layout(AXES)
-PROBE = TerminalLayout("probe", (("ch2/input", "BOOL", 0), ("ch2/latch_pos", "UNS64", 8)))
+PROBE = TerminalLayout(
+    "probe", (("ch2/input", "BOOL", 0), ("ch2/latch_pos", "UNS64", 8), ("ch2/latch_neg", "UNS64", 16))
+)
 CAMS = TerminalLayout("cams", tuple((f"ch{number}/input", "BOOL", number - 1) for number in range(1, 9)))
 UNIT = "ax/3/lr_mc_control/probing_signal"
 TIME = "ax/3/lr_mc_control/timestamp"
@@ -263,10 +265,10 @@ def test_an_unknown_path_is_refused_with_near_names_and_counted(bench: SmallBenc
 
 
 def test_terminals_are_got_whole_and_by_entry(bench: SmallBench, elsewhere: Any) -> None:
-    bench.publish(probe=struct.pack("<?7xQ", True, 2**40))
+    bench.publish(probe=struct.pack("<?7xQ8x", True, 2**40))
     found = {key: data for key, data, _ in ask(bench, elsewhere, plain_get, "demo/io/probe/**")}
     assert found == {
-        "demo/io/probe": struct.pack("<?7xQ", True, 2**40),
+        "demo/io/probe": struct.pack("<?7xQ8x", True, 2**40),
         "demo/io/probe/ch2/input": b"\x01",
         "demo/io/probe/ch2/latch_pos": struct.pack("<Q", 2**40),
     }
@@ -374,7 +376,7 @@ def test_lockstep_exchanges_2000_cycles_in_order(bench: SmallBench, elsewhere: A
     plc = elsewhere(lockstep_plc, bench.endpoint, 2000)
     bench.serve(lambda: bench.server.attached == ["lock"])
     for _ in range(2000):
-        commands = bench.exchange("lock", probe=struct.pack("<8xQ", bench.cycle + 1))
+        commands = bench.exchange("lock", probe=struct.pack("<8xQ8x", bench.cycle + 1))
         assert commands.cycle == bench.cycle
         assert [write.value for write in commands.writes] == [bench.cycle]
     bench.publish()
@@ -509,7 +511,7 @@ def test_a_script_in_a_process_forwards_the_probe(bench: SmallBench, processes: 
     assert bench.value(f"{UNIT}/enable_w") is True
     assert bench.value(f"{UNIT}/command_w") is False
     assert len(bench.exchange("probing").writes) == 0
-    bench.exchange("probing", probe=struct.pack("<?7xQ", True, 123_456))
+    bench.exchange("probing", probe=struct.pack("<?7xQ8x", True, 123_456))
     assert bench.value(f"{UNIT}/command_w") is True
     assert bench.value(f"{TIME}/command_w") == 123_456
     assert bench.value(f"{TIME}/enable_w") is True
@@ -592,7 +594,7 @@ def test_a_plc_of_zenoh_and_struct_alone_forwards_the_probe(bench: SmallBench, p
     processes.append(subprocess.Popen([sys.executable, str(path), bench.endpoint, "demo", "3"]))
     bench.serve(lambda: bench.server.attached == ["plain"])
     bench.exchange("plain")
-    bench.exchange("plain", probe=struct.pack("<?7xQ", True, 77))
+    bench.exchange("plain", probe=struct.pack("<?7xQ8x", True, 77))
     assert (bench.value(f"{UNIT}/command_w"), bench.value(f"{TIME}/command_w")) == (True, 77)
     assert (bench.value(f"{UNIT}/enable_w"), bench.value(f"{TIME}/enable_w")) == (True, True)
     assert bench.server.refused == 0

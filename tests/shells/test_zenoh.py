@@ -271,6 +271,7 @@ def test_terminals_are_got_whole_and_by_entry(bench: SmallBench, elsewhere: Any)
         "demo/io/probe": struct.pack("<?7xQ8x", True, 2**40),
         "demo/io/probe/ch2/input": b"\x01",
         "demo/io/probe/ch2/latch_pos": struct.pack("<Q", 2**40),
+        "demo/io/probe/ch2/latch_neg": bytes(8),
     }
 
 
@@ -279,6 +280,7 @@ def test_the_client_lists_gets_and_sets_elements(bench: SmallBench, elsewhere: A
     assert rows == [
         ("io/probe/ch2/input", "BOOL", "", "r"),
         ("io/probe/ch2/latch_pos", "UNS64", "", "r"),
+        ("io/probe/ch2/latch_neg", "UNS64", "", "r"),
         ("io/cams/ch2/input", "BOOL", "", "r"),
     ]
     assert ask(bench, elsewhere, with_client, "set", f"{UNIT}/X_Command", "TRUE") is None

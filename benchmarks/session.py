@@ -55,8 +55,12 @@ def main() -> None:
             del found["wall_s"], found["program"]
             digests.add(hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest())
     sim_s = found["sim_s"]
-    print(f"session of {sim_s:.1f} s machine time, {TURNS} cold commands: median {statistics.median(times[1:]):.2f} s, "
-          f"best {min(times[1:]):.2f} s; {'all results identical' if len(digests) == 1 else 'RESULTS DIFFER'}")  # fmt: skip
+    same = "all results identical" if len(digests) == 1 else "RESULTS DIFFER"
+    median, best = statistics.median(times[1:]), min(times[1:])
+    print(
+        f"session of {sim_s:.1f} s machine time, {TURNS} cold commands: median {median:.2f} s, best {best:.2f} s"
+    )
+    print(same)
 
 
 if __name__ == "__main__":

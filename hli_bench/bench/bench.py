@@ -270,9 +270,7 @@ class Bench:
             self._endpoint = free_endpoint()
             self._door = self._open_door(self._endpoint, lockstep=self._pace is None)
         assert self._endpoint is not None
-        process = self._closing.enter_context(
-            PlcProcess(plc.script, self._endpoint, plc.name, plc.period_us)
-        )
+        process = self._closing.enter_context(PlcProcess(plc.script, self._endpoint, plc.name, plc.period_us))
         deadline = Deadline(ATTACH_S)
         while not deadline.over:
             if self._door.attached(plc.name):

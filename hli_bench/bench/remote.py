@@ -161,13 +161,13 @@ class RemoteMachine:
     def send_ahead(self, cycle: int) -> None:
         """Send the targets for the next SYNC."""
         self.ahead = cycle
-        _tell(self._drives, telegraph.order(Order.NUMBERS, cycle, self._numbers.command()))
+        self._drives.tell(telegraph.order(Order.NUMBERS, cycle, self._numbers.command()))
 
     def look(self) -> None:
         """Use an idle gap: take the drives' answer to what was sent ahead, and let the terminals work on it."""
         if self.ahead is None or self._early is not None:
             return
-        self._early = _answer_of(self._drives)
+        self._early = self._drives.answer()
         state, _, _, _, edges = telegraph.read_reply(self._early)
         if state != telegraph.FAULT:
             self._ask_terminals(self.ahead, edges)
@@ -215,7 +215,7 @@ class RemoteMachine:
         """Tell the terminals the edges of a cycle; they work while the kernel does something else."""
         self._take_images()
         self._asked = cycle
-        _tell(self._terminals, telegraph.order(Order.CYCLE, cycle, edges))
+        self._terminals.tell(telegraph.order(Order.CYCLE, cycle, edges))
 
     def _from_bus(self, announced: Sequence[CanFrame]) -> list[CanFrame]:
         """Receive what the drives have announced; frames of other nodes on the bus are not for the CNC."""
@@ -237,24 +237,7 @@ class RemoteMachine:
         if self._asked is None:
             return
         self._asked = None
-        images = telegraph.read_parts(_answer_of(self._terminals))
+        images = telegraph.read_parts(self._terminals.answer())
         self._images = {
             layout.name: image for layout, image in zip(self.terminal_layouts, images, strict=True)
         }
-
-
-def _tell(worker: Worker, message: bytes) -> None:
-    """Send a message; the answer is taken later. Raises as `Worker.ask` does."""
-    try:
-        worker.pipe.send(message)
-    except EnvironmentLacks:
-        # It has gone; to ask it once more tells why.
-        worker.ask(message)
-
-
-def _answer_of(worker: Worker) -> bytes:
-    """Take an answer. Raises as `Worker.ask` does."""
-    try:
-        return worker.pipe.receive()
-    except EOFError:
-        return worker.ask(b"")

@@ -127,7 +127,7 @@ def advance(
             time -= step
             if step == lasts and brake == 0.0:
                 return length, v, time
-    return s, v, 0.0
+    return min(s, length), v, 0.0
 
 
 @law

@@ -71,7 +71,7 @@ def cores() -> Finding:
 def can_sockets() -> Finding:
     """Say whether the kernel knows SocketCAN at all (AF_CAN)."""
     advice = (
-        "Use --can inproc (the default) or --can socketcand:127.0.0.1:29536, load the kernel's CAN modules "
+        "Use --can inproc (the default), load the kernel's CAN modules "
         "(modprobe can-raw), or run in the virtual machine of tools/vcan_vm.sh."
     )
     if sys.platform != "linux":

@@ -3,6 +3,7 @@
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Final, Self
 
@@ -87,10 +88,17 @@ class RemoteMachine:
     ) -> None:
         """Start the processes; the numbers of telegrams come from and go into `axis`, the kernel's rows."""
         interface = can_interface(can)
-        self._bus = CanBus(interface) if interface else None
         given = [str(machine), json.dumps(dict(settings))]
-        self._drives = Worker(_DRIVES, [*given, interface, REALTIME if realtime else ""])
-        self._terminals = Worker(_TERMINALS, given)
+        with ExitStack() as stack:
+            self._bus = CanBus(interface) if interface else None
+            if self._bus is not None:
+                stack.callback(self._bus.close)
+            self._drives = Worker(_DRIVES, [*given, interface, REALTIME if realtime else ""])
+            stack.callback(self._drives.close)
+            self._terminals = Worker(_TERMINALS, given)
+            stack.callback(self._terminals.close)
+            # All there: from here on `__exit__` ends what the stack holds.
+            self._closing = stack.pop_all()
         self._signals = signal_names([axis.name for axis in config.axes])
         self._edges: list[Edge] = []
         self._images: dict[str, bytes] = {}
@@ -114,10 +122,7 @@ class RemoteMachine:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._drives.close()
-        self._terminals.close()
-        if self._bus is not None:
-            self._bus.close()
+        self._closing.close()
 
     def power_on(self) -> list[CanFrame]:
         """Boot all nodes."""

@@ -7,6 +7,7 @@ Each command is a module with `add`, which declares it, and `execute`, which ret
 import argparse
 import io
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from typing import Final
@@ -43,6 +44,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     arguments = parser().parse_args(argv)
+    if getattr(arguments, "stays", False):
+        _end_by_signal()
     try:
         status: int = arguments.execute(arguments)
         sys.stdout.flush()
@@ -56,6 +59,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return PIPE_CLOSED
     return status
+
+
+def _end_by_signal() -> None:
+    """Let SIGINT and SIGTERM be the regular end of a command that stays until then.
+
+    Said explicitly, because a shell without job control starts a command with `&` so that it ignores SIGINT.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ def add(commands: Commands) -> None:
     parser.add_argument("script", metavar="SCRIPT", help="a file, or the name of a supplied script")
     parser.add_argument("--name", default="", help="name of the PLC (default: that of the file)")
     add_connect(parser)
-    parser.set_defaults(execute=execute)
+    parser.set_defaults(execute=execute, stays=True)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -24,7 +24,13 @@ def execute(arguments: argparse.Namespace) -> int:
     from hli_bench.shells.plc_process import attach
 
     try:
-        attach(script, arguments.connect, arguments.machine, arguments.name)
+        attach(
+            script,
+            arguments.connect,
+            arguments.machine,
+            arguments.name,
+            on_line=lambda line: print(line, flush=True),
+        )
     except KeyboardInterrupt:
         return 0
     return 0

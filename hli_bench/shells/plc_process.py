@@ -6,7 +6,7 @@
 import json
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from time import monotonic
@@ -26,13 +26,24 @@ RECONNECT_S: Final = 2.0
 
 
 class ScriptClient:
-    """A task with its session: takes images off the net, puts commands. `period_us` None: the script's own."""
+    """A task with its session: takes images off the net, puts commands. `period_us` None: the script's own.
 
-    def __init__(self, client: HliClient, script: Path, name: str, period_us: int | None = None) -> None:
+    `on_line` gets a line for people whenever the script takes part, and when the bench has ended.
+    """
+
+    def __init__(
+        self,
+        client: HliClient,
+        script: Path,
+        name: str,
+        period_us: int | None = None,
+        on_line: Callable[[str], None] = lambda _: None,
+    ) -> None:
         self._client = client
         self._script = script
         self._name = name
         self._period_us = period_us
+        self._on_line = on_line
         self._key = f"{client.machine}/plc/{name}"
         self._packing = CommandsPacking(client.layout)
         self._inbox: SimpleQueue[tuple[str, Any]] = SimpleQueue()
@@ -54,6 +65,7 @@ class ScriptClient:
         try:
             while self._attached():
                 pass
+            self._on_line(f"the bench at {self._client.endpoint} has ended")
         finally:
             token.undeclare()
 
@@ -69,6 +81,9 @@ class ScriptClient:
             client.ask_packed(f"plc/{self._name}/attach", json.dumps({"period_us": period_us}))
         )
         first, period = terms["cycle"], terms["period_us"] // terms["cycle_us"]
+        self._on_line(
+            f"{self._name} is attached to {client.machine} at {client.endpoint}, every {terms['period_us']} us"
+        )
         publisher = client.session.declare_publisher(f"{self._key}/commands", express=True)
         while True:
             image = self._next_image(first, period)
@@ -113,17 +128,22 @@ class ScriptClient:
 
 
 def attach(
-    script: Path, endpoint: str, machine: str = "", name: str = "", period_us: int | None = None
+    script: Path,
+    endpoint: str,
+    machine: str = "",
+    name: str = "",
+    period_us: int | None = None,
+    on_line: Callable[[str], None] = lambda _: None,
 ) -> None:
     """Attach a script to the bench at `endpoint` and run it until the bench ends.
 
-    `name` is by default the file's, `period_us` the script's own.
+    `name` is by default the file's, `period_us` the script's own; `on_line` gets lines for people.
 
     Raises EnvironmentLacks when no bench is there, InputError when the script fails or the bench refuses it.
     """
     load(script)
     with HliClient(endpoint, machine) as client:
-        ScriptClient(client, script, name or script.stem, period_us).run()
+        ScriptClient(client, script, name or script.stem, period_us, on_line).run()
 
 
 def start(

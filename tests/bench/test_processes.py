@@ -36,12 +36,13 @@ N60 G74 X1
 N70 M30
 """
 SERVING = """
-import json, sys
+import json, signal, sys
 from contextlib import closing
 from pathlib import Path
 from hli_bench import Bench
 from hli_bench.shells.trace_file import TraceFile
 
+signal.signal(signal.SIGINT, signal.default_int_handler)
 settings, endpoint, trace = json.loads(sys.argv[1]), sys.argv[2], Path(sys.argv[3])
 with Bench("demo", settings, plc=[], zenoh=endpoint, processes=True) as bench:
     recorder = TraceFile(trace, bench.kernel.setup, bench.kernel.rows.log, bench.config.name)

@@ -34,7 +34,9 @@ LONG = "N10 G01 G90 Z0 F60\nN20 M30\n"
 class Command:
     """A running command: its lines of output as they come, its end, what is left of its session."""
 
-    def __init__(self, arguments: Sequence[str | Path]) -> None:
+    def __init__(
+        self, arguments: Sequence[str | Path], on_interrupt: signal.Handlers = signal.SIG_DFL
+    ) -> None:
         self.process = subprocess.Popen(
             [str(argument) for argument in arguments],
             stdin=subprocess.DEVNULL,
@@ -43,7 +45,7 @@ class Command:
             text=True,
             start_new_session=True,
             # A test run in the background would hand down that Ctrl-C is to be ignored.
-            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509 - allocates nothing
+            preexec_fn=lambda: signal.signal(signal.SIGINT, on_interrupt),  # noqa: PLW1509 - allocates nothing
         )
         self.out: list[str] = []
         self.err: list[str] = []
@@ -128,8 +130,10 @@ def starter() -> Iterator[Start]:
     """Give what starts `hli-bench` (or another program); kill what of it is left over in the end."""
     commands: list[Command] = []
 
-    def started(*arguments: str | Path, program: Sequence[str | Path] = (COMMAND,)) -> Command:
-        commands.append(Command([*program, *arguments]))
+    def started(
+        *arguments: str | Path, program: Sequence[str | Path] = (COMMAND,), background: bool = False
+    ) -> Command:
+        commands.append(Command([*program, *arguments], signal.SIG_IGN if background else signal.SIG_DFL))
         return commands[-1]
 
     yield started

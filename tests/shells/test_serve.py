@@ -31,6 +31,21 @@ def test_a_user_attaches_a_plc_probes_and_ends_it_all(serve: Any, probe: Path, p
     assert plc.nothing_left()
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_serve_and_plc_started_in_the_background_end_by_a_signal(
+    start: Any, endpoint: str, number: int
+) -> None:
+    """A shell without job control lets them ignore SIGINT; they end by it all the same."""
+    serve = start("serve", "--zenoh", endpoint, "--plc", "none", background=True)
+    assert "is up" in serve.line()
+    plc = start("plc", "demo.py", "--connect", endpoint, background=True)
+    assert plc.line() == f"demo is attached to demo at {endpoint}, every 1000 us"
+    for command in (plc, serve):
+        command.process.send_signal(number)
+        assert command.end() == 0, command.err
+        assert command.nothing_left()
+
+
 @pytest.mark.req("M-134", "M-235", "M-238")
 @pytest.mark.parametrize("pace", ["free", "real"])
 def test_a_plc_made_of_zenoh_and_struct_alone_probes(

@@ -448,13 +448,16 @@ def test_an_attach_without_a_living_token_is_refused(bench: SmallBench, elsewher
 
 
 def attach_and_go(endpoint: str) -> str:
-    """Attach and, before there is an answer, end; return the answer."""
+    """Attach and, before there is an answer, end; return the answer.
+
+    The end of a token may overtake a query on its way: the question in between waits until the bench has both.
+    """
     answers: SimpleQueue[Any] = SimpleQueue()
     with connect(endpoint) as session:
         token = session.liveliness().declare_token("demo/plc/brief/alive")
         session.get("demo/plc/brief/attach", answers.put, payload='{"period_us": 1000}', timeout=10.0)
-        token.undeclare()
         list(session.get("demo/hli/errors", timeout=10.0))
+        token.undeclare()
         reply = answers.get(timeout=PATIENCE_S)
         return str(reply.err.payload.to_string()) if reply.ok is None else "taken in"
 
@@ -467,6 +470,8 @@ def test_a_plc_that_goes_while_it_attaches_is_not_taken_in(bench: SmallBench, el
         requests += bench.server.wait_request(0.05)
         if any(isinstance(request, Attach) for request in requests) and not bench.server._alive_plcs:
             break
+        if future.done():
+            pytest.fail(f"the PLC has ended: {future.result()}")
     else:
         pytest.fail(f"the PLC did not come and go: {requests}, {bench.server._alive_plcs}")
     for request in requests:

@@ -15,7 +15,9 @@ from hli_bench.bench.door import HliDoor, result_reply
 from hli_bench.bench.plc_ports import LocalPlc
 from hli_bench.bench.remote import RemoteEngine, RemoteMachine
 from hli_bench.bench.result import Collector, Result, measurements
+from hli_bench.bench.standstill import Standstill
 from hli_bench.kernel.records import Emitted
+from hli_bench.manual.lists import Severity
 from hli_bench.plc import Task
 from hli_bench.plc import load as load_script
 from hli_bench.protocols.hli.access import Refusal
@@ -34,13 +36,16 @@ ATTACH_S: Final = 30.0
 """Wall time in which a PLC process must have attached."""
 
 OnRecord = Callable[[Emitted], None]
+OnNote = Callable[[str], None]
 
 
 class Bench:
     """A bench of its own: kernel, drives, plant, terminals and PLC tasks in this process, in virtual time.
 
     `settings` are dotted keys of the machine folder, as with `--set`. `plc` replaces the machine's PLC
-    scripts; an empty list leaves it without any. Use it as a context manager.
+    scripts; an empty list leaves it without any. `on_note` gets a line for people when the machine folder has a
+    warning, when the operating system has been asked for `realtime`, and when a PLC holds a program for long. Use
+    it as a context manager.
     Raises InputError for a bad machine folder or setting, NotEmulated for what is not built.
     """
 
@@ -56,11 +61,16 @@ class Bench:
         processes: bool = False,
         observers: Sequence[Observer] = (),
         on_record: OnRecord | None = None,
+        on_note: OnNote = lambda _: None,
         realtime: bool = False,
     ) -> None:
         if realtime and pace != "real":
             raise InputError(f"realtime is for a bench by the clock (pace real), not for pace {pace}")
         self.config: MachineConfig = load(machine, settings or {})
+        for note in self.config.notes:
+            if note.severity is Severity.WARNING:
+                on_note(f"warning: {note}")
+        self._on_note = on_note
         with ExitStack() as stack:
             self._closing = stack
             self._realtime = realtime
@@ -74,8 +84,7 @@ class Bench:
             self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
             self._garbage = Garbage()
             self._pace = RealPace(self.config.cycle_ns, idle=self._idle) if pace == "real" else None
-            self.pace_notes: list[str] = []
-            """What the operating system gave for `realtime`, and what not; filled by `start_up`."""
+            self._standstill = Standstill(self.kernel, on_note)
             self._plcs = plc_configs(self.config, plc)
             self._up = False
             self.interrupted: Result | None = None
@@ -126,19 +135,23 @@ class Bench:
         collector = Collector(self.kernel.setup.axes)
         self._tap.collector = collector
         first = self.engine.cycle
+        self._standstill.begin(first)
         last = FOREVER if limit_s is None else first + round(limit_s * NS_PER_S / self.config.cycle_ns)
         if self._pace is not None:
             self._pace.resume()
             self._pace.take_part()
         ended = False
+        holding: list[str] = []
         try:
             self.kernel.start(lines, name)
             self.engine.wake()
             if self._door is not None:
                 self._door.state_changed()
             ended = self._advance(lambda: not self.kernel.channel.running, last)
+            holding = [] if ended else self.kernel.holding()
         except KeyboardInterrupt:
-            self.interrupted = self._result(name, "aborted", collector, first, watch)
+            holding = self.kernel.holding()
+            self.interrupted = self._result(name, "aborted", collector, first, watch, holding)
             raise
         finally:
             if not ended:
@@ -147,13 +160,21 @@ class Bench:
             if self._door is not None:
                 self._door.state_changed()
         status = "completed" if self.kernel.channel.completed else "error"
-        result = self._result(name, status if ended else "aborted", collector, first, watch)
+        result = self._result(name, status if ended else "aborted", collector, first, watch, holding)
         if self._pace is not None:
             self._garbage.between_programs()
         return result
 
-    def _result(self, name: str, status: str, collector: Collector, first: int, watch: Stopwatch) -> Result:
-        """Return the result of a program that began behind cycle `first`."""
+    def _result(
+        self,
+        name: str,
+        status: str,
+        collector: Collector,
+        first: int,
+        watch: Stopwatch,
+        holding: Sequence[str],
+    ) -> Result:
+        """Return the result of a program that began behind cycle `first`; what `holding` names held its motion."""
         cycles = self.engine.cycle - first
         return Result(
             program=name,
@@ -166,6 +187,10 @@ class Bench:
             sim_s=round(cycles * self.config.cycle_ns * 1e-9, 9),
             wall_s=watch.seconds(),
             cycles=cycles,
+            notes=(
+                *(f"motion was held: {element}" for element in holding),
+                *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
+            ),
             lateness=self._pace.take_part() if self._pace else None,
         )
 
@@ -216,6 +241,8 @@ class Bench:
                 self._pace.wait()
             each = self._pace is not None or (self._door is not None and self._door.watched)
             self.engine.step(self.engine.cycle + 1 if each else limit)
+            if self.engine.cycle >= self._standstill.due:
+                self._standstill.look(self.engine.cycle)
             if self._door is not None:
                 self._door.after_step()
         return True
@@ -246,12 +273,15 @@ class Bench:
         calm = ask(realtime=self._realtime)
         self._closing.callback(calm.close)
         self._closing.enter_context(frozen_garbage())
-        self.pace_notes = calm.notes
+        for note in calm.notes:
+            self._on_note(note)
 
     def _open_door(self, endpoint: str, *, lockstep: bool) -> HliDoor:
         server = HliServer(endpoint, self.config.name, self.kernel.image.layout, self.terminal_layouts)
         self._closing.enter_context(server)
-        self._tap.door = HliDoor(server, self.engine, lockstep=lockstep, state=self.state)
+        self._tap.door = HliDoor(
+            server, self.engine, lockstep=lockstep, state=self.state, on_note=self._on_note
+        )
         return self._tap.door
 
     def _attach_plcs(self) -> None:

@@ -29,15 +29,25 @@ ANSWER_S: Final = 10.0
 
 
 class HliDoor:
-    """Serves clients. `after_step` is called after every stretch of cycles, `idle` while no program runs."""
+    """Serves clients; `after_step` is called after every stretch of cycles, `wait` while time stands still.
+
+    `on_note` gets lines for people.
+    """
 
     def __init__(
-        self, server: HliServer, engine: Engine, *, lockstep: bool, state: Callable[[], dict[str, Any]]
+        self,
+        server: HliServer,
+        engine: Engine,
+        *,
+        lockstep: bool,
+        state: Callable[[], dict[str, Any]],
+        on_note: Callable[[str], None],
     ) -> None:
         self._server = server
         self._engine = engine
         self._lockstep = lockstep
         self._state = state
+        self._on_note = on_note
         self._published = -1
         self._written: list[tuple[int, WriteRequest]] = []
         self._resets: list[tuple[int, Reset]] = []
@@ -135,11 +145,17 @@ class HliDoor:
         """Answer the writes that the kernel has seen by now, and the resets after which all drives are back."""
         cycle = self._engine.cycle
         while self._written and self._written[0][0] <= cycle:
-            self._written.pop(0)[1].reply()
+            request = self._written.pop(0)[1]
+            request.reply(self._remark(request))
         ready = self._engine.kernel.ready
         while self._resets and cycle > self._resets[0][0] + (0 if ready else RESET_CYCLES):
             self._resets.pop(0)[1].reply()
             self.state_changed()
+
+    def _remark(self, request: WriteRequest) -> str:
+        """Return as JSON that what was written to a unit does not count, and why; "" when it does."""
+        reason = self._engine.kernel.in_vain(request.write.path)
+        return json.dumps({"note": f"does not count: {reason}"}) if reason else ""
 
     def _attach(self, request: Attach) -> None:
         engine = self._engine
@@ -164,7 +180,13 @@ class HliDoor:
             self._engine.lose(plc)
             self._settle_until = self._engine.cycle + 1
         while self._engine.lost:
-            self._server.detach(self._engine.lost.pop())
+            name = self._engine.lost.pop()
+            if self.attached(name):
+                self._on_note(
+                    f"PLC {name} is alive and has not answered cycle {self._engine.cycle} for {ANSWER_S:g} s: "
+                    "it takes part no more until it attaches anew"
+                )
+            self._server.detach(name)
 
 
 def result_reply(run: Callable[[], Any], request: RunProgram) -> None:

@@ -72,6 +72,8 @@ class Result:
     sim_s: float
     wall_s: float
     cycles: int
+    notes: Sequence[str] = ()
+    """What the bench remarks beside the CNC: commands of a PLC that did not count, what held the motion."""
     lateness: Lateness | None = None
     """How a bench in real pace kept its cycle meanwhile, None in free pace."""
 

@@ -23,8 +23,7 @@ def serve(
 ) -> None:
     """Start kernel, drives and terminals as processes and serve clients until KeyboardInterrupt.
 
-    `on_line` gets a line for people when the bench is up, `on_note` before that what `realtime` has got.
-    Raises as `Bench` does.
+    `on_line` gets a line for people when the bench is up; `on_note` as of `Bench`. Raises as `Bench` does.
     """
     endpoint = zenoh or DEFAULT_ENDPOINT
     with Bench(
@@ -37,9 +36,8 @@ def serve(
         processes=True,
         observers=observers,
         realtime=realtime,
+        on_note=on_note,
     ) as bench:
         bench.start_up()
-        for note in bench.pace_notes:
-            on_note(note)
         on_line(f"{bench.config.name} is up on {endpoint}, cycle {bench.config.cycle_us} us, pace {pace}")
         bench.serve()

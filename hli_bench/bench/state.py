@@ -33,6 +33,7 @@ def look(config: MachineConfig, engine: Engine, lateness: Lateness | None) -> di
         "mode": "automatic",
         "state": "active" if kernel.channel.running else ("error" if kernel.core.failed else "ready"),
         "block": kernel.source.number,
+        "held_by": kernel.holding(),
         "cycle": engine.cycle,
         "dc_ns": int(engine.dc_ns),
         "axes": axes,

@@ -1,6 +1,7 @@
 """`hli-bench hli ls/get/set/watch`: HLI and terminal elements of a bench that is up."""
 
 import argparse
+import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -65,9 +66,11 @@ def set_value(arguments: argparse.Namespace) -> int:
     """Write a value."""
     with _client(arguments) as client:
         try:
-            client.set(arguments.path, arguments.value)
+            note = client.set(arguments.path, arguments.value)
         except InputError as error:
             raise InputError(f"{arguments.path}: {error.message}") from error
+    if note:
+        print(f"note: {arguments.path} {note}", file=sys.stderr)
     return 0
 
 

@@ -44,8 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     arguments = parser().parse_args(argv)
-    if getattr(arguments, "stays", False):
-        _end_by_signal()
+    _take_signals(terminate=getattr(arguments, "stays", False))
     try:
         status: int = arguments.execute(arguments)
         sys.stdout.flush()
@@ -61,13 +60,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     return status
 
 
-def _end_by_signal() -> None:
-    """Let SIGINT and SIGTERM be the regular end of a command that stays until then.
+def _take_signals(*, terminate: bool) -> None:
+    """Let SIGINT interrupt the command, and SIGTERM one that stays until it is told to end.
 
     Said explicitly, because a shell without job control starts a command with `&` so that it ignores SIGINT.
     """
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.default_int_handler)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    if terminate:
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager
@@ -45,6 +46,7 @@ OF_AN_OWN_BENCH: Final = (
     "trace",
     "report",
     "can_log",
+    "limit",
 )
 """Options that say nothing about a bench that is up already."""
 
@@ -60,6 +62,12 @@ def add(commands: Commands) -> None:
     parser.add_argument("program", metavar="PROGRAM.nc", help="a file, or the name of a supplied program")
     add_bench(parser, pace="free", zenoh=None)
     parser.add_argument("--connect", metavar="ENDPOINT", help="use the bench that listens there")
+    parser.add_argument(
+        "--limit",
+        metavar="SECONDS",
+        type=seconds,
+        help="machine time after which a program that is not done is aborted (default: none)",
+    )
     files = parser.add_argument_group("files to write")
     files.add_argument(
         "--result", metavar="FILE.json", help="messages, errors, measured values (mm, degrees)"
@@ -68,6 +76,17 @@ def add(commands: Commands) -> None:
     files.add_argument("--report", metavar="FILE.html", help="one page with plots")
     files.add_argument("--can-log", metavar="FILE", help="the CAN frames as candump writes them")
     parser.set_defaults(execute=execute)
+
+
+def seconds(text: str) -> float:
+    """Return the text of `--limit` as a time."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r}: expected seconds above 0")
+    return value
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -82,6 +101,9 @@ def execute(arguments: argparse.Namespace) -> int:
     finish(result.to_dict(), arguments.result)
     if result.late_cycles:
         print(f"{result.late_cycles} of {result.cycles} cycles were late", file=sys.stderr)
+    if result.status == "aborted" and arguments.limit is not None and result.sim_s >= arguments.limit:
+        print(f"--limit: not done after {arguments.limit:g} s of machine time", file=sys.stderr)
+        return EXIT_STATUS["error"]
     return EXIT_STATUS[result.status]
 
 
@@ -102,7 +124,7 @@ def prepare(file: str | None, option: str) -> None:
 
 
 def finish(result: Mapping[str, Any], file: str | None) -> None:
-    """Write the result file and say on standard error how the run ended."""
+    """Write the result file and say on standard error how the run ended, and what the bench remarks."""
     if file is not None:
         keys = (*RESULT_KEYS, *(key for key in PACED_KEYS if key in result))
         text = json.dumps({key: result[key] for key in keys}, indent=2, ensure_ascii=False)
@@ -112,6 +134,8 @@ def finish(result: Mapping[str, Any], file: str | None) -> None:
         f"in {result['wall_s']:.1f} s, {result['cycles']} cycles",
         file=sys.stderr,
     )
+    for note in result["notes"]:
+        print(f"note: {note}", file=sys.stderr)
 
 
 # -- a bench of its own -----------------------------------------------------------------------------------
@@ -127,19 +151,15 @@ def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) ->
         plc=options.plc,
         pace=options.pace,
         on_record=_print_record,
+        on_note=_print_note,
         realtime=options.realtime,
         **_buses(options),
     ) as bench:
-        for note in bench.config.notes:
-            if note.severity == "warning":
-                print(f"warning: {note}", file=sys.stderr)
         report = None if arguments.report is None else _reporter(bench)
         with _recorders(bench, options, arguments):
             bench.start_up()
-            for pace_note in bench.pace_notes:
-                print(pace_note, file=sys.stderr)
             try:
-                result = bench.run(program)
+                result = bench.run(program, limit_s=arguments.limit)
             except KeyboardInterrupt:
                 if bench.interrupted is None:
                     raise
@@ -153,6 +173,10 @@ def _buses(options: BenchOptions) -> dict[str, Any]:
     """Return the arguments of a bench that is not alone in this process."""
     given = {"can": options.can if options.can != "inproc" else None, "zenoh": options.zenoh}
     return {key: value for key, value in given.items() if value is not None}
+
+
+def _print_note(note: str) -> None:
+    print(note, file=sys.stderr, flush=True)
 
 
 def _print_record(record: "Emitted") -> None:

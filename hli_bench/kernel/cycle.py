@@ -13,6 +13,7 @@ from hli_bench.kernel.decoder import Decoder, DecoderAxis, DecoderDefaults
 from hli_bench.kernel.drive_manager import start_up
 from hli_bench.kernel.drive_manager.objects import ObjectChannel
 from hli_bench.kernel.drive_manager.telegram import ActualTelegrams, command_frames
+from hli_bench.kernel.hindrances import holding, in_vain, unheard
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.records import Emitted
 from hli_bench.kernel.sequence import END, Sequence
@@ -162,6 +163,18 @@ class Kernel:
     def position_mm(self, axis: AxisIndex) -> float:
         """Return the actual position of an axis in mm (degrees)."""
         return mm(float(self.core.row(axis)["actual"]))
+
+    def holding(self) -> list[str]:
+        """Return the elements that make commanded motion stand."""
+        return holding(self.core)
+
+    def unheard(self) -> list[str]:
+        """Return the enabled control units whose commands count for nothing, with the reason."""
+        return unheard(self.core)
+
+    def in_vain(self, member: str) -> str:
+        """Return why what a PLC has just written to a member counts for nothing, "" when it does count."""
+        return in_vain(self.core, member)
 
     @property
     def source(self) -> Source:

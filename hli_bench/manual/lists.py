@@ -91,7 +91,11 @@ def parse_list(cls: type[Any], text: str, file: str = "") -> ParsedList:
     """Parse a list for the tree `cls`: all values that are right, and all findings."""
     known = catalogue(cls)
     parsed = ParsedList({}, [], {})
-    for number, path, column, raw in _rows(text):
+    rows = _rows(text)
+    for number, path, column, raw in rows:
+        if path.lower() in END:
+            parsed.findings.extend(_behind_end(rows, number, file))
+            break
         try:
             located = known.locate(path)
             if located.path in parsed.lines:
@@ -109,15 +113,25 @@ def parse_list(cls: type[Any], text: str, file: str = "") -> ParsedList:
 
 
 def _rows(text: str) -> Iterator[tuple[int, str, int, str | None]]:
-    """Yield (line, path, column, value text) of every line that sets a parameter, up to `End`."""
+    """Yield (line, path, column, value text) of every line that says something."""
     for number, line in enumerate(text.splitlines(), start=1):
         content = line.split("#", 1)[0].strip()
         if not content or FILLER.match(content):
             continue
         path, *rest = content.split(maxsplit=1)
-        if path.lower() in END:
-            return
         yield number, path, line.index(path[0]) + 1, _value_text(rest[0] if rest else "")
+
+
+def _behind_end(rows: Iterator[tuple[int, str, int, str | None]], end: int, file: str) -> Iterator[Finding]:
+    """Yield a warning when `End` in line `end` is not the end: the control reads no further."""
+    first = next(rows, None)
+    if first is not None:
+        number, path, column, _ = first
+        count = 1 + sum(1 for _ in rows)
+        message = f"{path}: stands behind `End` of line {end} and does not count" + (
+            f", nor do {count - 1} more lines" if count > 1 else ""
+        )
+        yield Finding(Severity.WARNING, message, file, number, column)
 
 
 def _value_text(rest: str) -> str | None:

@@ -66,12 +66,16 @@ class HliClient:
         """
         return json.loads(self._one(f"{self._path(name)}?format=json"))
 
-    def set(self, name: str, text: str) -> None:
-        """Write `text` (`TRUE`, `123`) to an element, return when done. Raises InputError when refused."""
+    def set(self, name: str, text: str) -> str:
+        """Write `text` (`TRUE`, `123`) to an element; return when done, with what the bench remarks on it or "".
+
+        Raises InputError when it is refused.
+        """
         path = self._path(name)
         if path.startswith("io/"):
             raise InputError(f"{name} is an input; only HLI elements can be set")
-        self._one(path, text, encoding=TEXT)
+        answer = self._one(path, text, encoding=TEXT)
+        return str(json.loads(answer)["note"]) if answer else ""
 
     def watch(self, name: str, timeout_s: float | None = None) -> Iterator[Any]:
         """Yield the value of an element, unit or terminal entry now and whenever it changes.

@@ -2,8 +2,10 @@
 
 import json
 import os
+import re
 import signal
 import struct
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -12,8 +14,10 @@ from typing import Any
 
 import pytest
 
+from hli_bench import Bench
 from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError, NotEmulated
 from hli_bench.base.loading import data_file
+from hli_bench.bench import door
 from hli_bench.bench.door import result_reply
 from hli_bench.shells.plc_process import main
 from hli_bench.shells.processes import Deadline, PlcProcess, Worker
@@ -22,6 +26,7 @@ from hli_bench.shells.zenoh_session import connect
 
 UNIT = "ax/3/lr_mc_control/probing_signal"
 PLC_STOPPED = 40011
+PATIENCE_S = 60.0
 PLAIN_PLC = Path(__file__).with_name("plain_zenoh_plc.py")
 CRASHING = """
 from hli_bench.plc import Plc
@@ -270,6 +275,38 @@ def test_a_period_that_is_given_replaces_the_scripts_own(serve: Any) -> None:
         bench.settled(lambda state: len(state["plcs"]) == 2)
         periods = {plc["name"]: plc["period_cycles"] for plc in bench.state()["plcs"]}
     assert periods == {"given": 3, "own": 1}
+
+
+MUTE = """
+import sys
+from hli_bench.shells.zenoh_session import connect
+
+with connect(sys.argv[1]) as session:
+    token = session.liveliness().declare_token("demo/plc/mute/alive")
+    list(session.get("demo/plc/mute/attach", payload='{"period_us": 1000}', timeout=30.0))
+    sys.stdin.read()
+"""
+
+
+def test_a_plc_that_lives_and_does_not_answer_is_named(
+    endpoint: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its session says that it is there: only the time that lock-step waits ends it."""
+    monkeypatch.setattr(door, "ANSWER_S", 0.3)
+    notes: list[str] = []
+    with Bench("demo", plc=[], zenoh=endpoint, on_note=notes.append) as bench:
+        bench.start_up()
+        with subprocess.Popen([sys.executable, "-c", MUTE, endpoint], stdin=subprocess.PIPE) as mute:
+            deadline = Deadline(PATIENCE_S)
+            while not bench._door.attached("mute"):
+                assert not deadline.over
+                bench._door.wait(0.05)
+            result = bench.run("N10 G01 X1 F600\nN20 M30\n")
+            mute.communicate()
+        assert [error.id for error in result.errors] == [PLC_STOPPED]
+        assert not bench._door.attached("mute")
+        (note,) = notes
+        assert re.fullmatch(r"PLC mute is alive and has not answered cycle \d+ for 0\.3 s: .*", note)
 
 
 def test_a_worker_that_is_stuck_is_named_and_ended() -> None:

@@ -103,6 +103,25 @@ def test_what_the_cnc_sees_of_a_write_is_there_when_the_command_returns(
         assert do("hli", "get", f"{UNIT}/state_r", *connect) == [value]
 
 
+def test_a_write_that_does_not_count_is_remarked(start: Any, serve: Any) -> None:
+    bench = serve("--plc", "none", "--pace", "free")
+
+    def said(path: str, value: str) -> list[str]:
+        command = start("hli", "set", path, value, "--connect", bench.endpoint)
+        assert (command.end(), command.out) == (0, [])
+        return command.err
+
+    absent = "does not count: ax/3/head/plc_present_w is FALSE"
+    assert said(f"{UNIT}/enable_w", "TRUE") == [f"note: {UNIT}/enable_w {absent}"]
+    assert said(f"{UNIT}/enable_w", "FALSE") == []
+    assert said(f"{UNIT}/command_w", "TRUE") == [f"note: {UNIT}/command_w {absent}"]
+    assert said("ax/3/head/plc_present_w", "TRUE") == []
+    disabled = f"does not count: {UNIT}/enable_w is FALSE"
+    assert said(f"{UNIT}/command_w", "FALSE") == [f"note: {UNIT}/command_w {disabled}"]
+    assert said(f"{UNIT}/enable_w", "TRUE") == []
+    assert said(f"{UNIT}/command_w", "TRUE") == []
+
+
 @pytest.mark.req("M-237")
 @pytest.mark.parametrize(
     ("path", "value", "reason"),

@@ -42,6 +42,19 @@ class ControlUnit:
         self.effective: Value = default
         self.redirected = False
 
+    @property
+    def enabled(self) -> bool:
+        """The PLC has switched redirection on; it holds only while the PLC is present as well."""
+        return bool(self._image.get(self._enable))
+
+    @property
+    def unheard(self) -> str:
+        """Why the PLC's command does not count, "" when it does."""
+        image = self._image
+        if not image.get(self._present):
+            return f"{image.layout.elements[self._present].path} is FALSE"
+        return "" if self.enabled else f"{self.path}/enable_w is FALSE"
+
     def ask(self, wish: Value) -> None:
         """Take a wish of the GUI: it acts at the next sampling, or shows in request_r under redirection."""
         self._gui = wish
@@ -57,7 +70,7 @@ class ControlUnit:
         """
         image = self._image
         before = self.redirected, self.effective
-        self.redirected = bool(image.get(self._enable)) and bool(image.get(self._present))
+        self.redirected = self.enabled and bool(image.get(self._present))
         image.set(self._request, self._gui if self.redirected else type(self._gui)())
         if not self.redirected:
             self.effective = self._gui
@@ -99,6 +112,9 @@ class ControlUnits:
     def __getitem__(self, name: str) -> ControlUnit:
         """Return the unit that `name` means (path, ST form or old name)."""
         return self._units[self._image.layout.resolve(name)]
+
+    def __contains__(self, path: str) -> bool:
+        return path in self._units
 
     def __iter__(self) -> Iterator[ControlUnit]:
         return iter(self._units.values())

@@ -77,6 +77,24 @@ def test_the_name_of_a_supplied_program_and_script_will_do(capsys: pytest.Captur
     assert capsys.readouterr().out.splitlines() == MEASURED
 
 
+def test_a_limit_of_machine_time_ends_with_1(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    program, file = tmp_path / "slow.nc", tmp_path / "r.json"
+    program.write_text("N20 G90 G01 Z290 F1\nN30 M30\n", encoding="utf-8")
+    assert main(["run", str(program), "--limit", "1.5", "--result", str(file)]) == 1
+    assert "--limit: not done after 1.5 s of machine time" in capsys.readouterr().err
+    assert (read_result(file)["status"], read_result(file)["cycles"]) == ("aborted", 1500)
+    program.write_text("N30 M30\n", encoding="utf-8")
+    assert main(["run", str(program), "--limit", "1.5"]) == 0
+
+
+@pytest.mark.parametrize("given", ["0", "-1", "nan", "inf", "soon"])
+def test_a_limit_is_seconds_above_0(capsys: pytest.CaptureFixture[str], given: str) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["run", "probe.nc", f"--limit={given}"])
+    assert ended.value.code == 2
+    assert f"{given!r}: expected seconds above 0" in capsys.readouterr().err
+
+
 def test_ctrl_c_aborts_and_still_writes_the_result(tmp_path: Path) -> None:
     program, file = tmp_path / "slow.nc", tmp_path / "r.json"
     program.write_text('N10 #MSG SYN["started"]\nN20 G90 G01 Z290 F1\nN30 M30\n', encoding="utf-8")
@@ -85,6 +103,8 @@ def test_ctrl_c_aborts_and_still_writes_the_result(tmp_path: Path) -> None:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # As a shell without job control starts it with `&`.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),  # noqa: PLW1509 - allocates nothing
     )
     assert running.stdout is not None
     assert running.stdout.readline() == "started\n"

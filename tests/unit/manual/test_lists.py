@@ -62,6 +62,19 @@ def errors(parsed: ParsedList) -> list[Finding]:
     return [finding for finding in parsed.findings if finding.severity is Severity.ERROR]
 
 
+def test_what_stands_behind_the_end_is_named() -> None:
+    """The control reads no further; a parameter that was lost there without a word would be hard to find."""
+    text = "kopf.achs_nr 1\nEnd\n\n# a remark\nkopf.achs_nr 2\n  kenngr.messachse 1\nnonsense\n"
+    parsed = parse_axis_list(text, "axis.lis")
+    assert parsed.values == {"kopf.achs_nr": 1}
+    (found,) = parsed.findings
+    assert (found.severity, found.line, found.column) == (Severity.WARNING, 5, 1)
+    assert (
+        found.message == "kopf.achs_nr: stands behind `End` of line 2 and does not count, nor do 2 more lines"
+    )
+    assert parse_axis_list("kopf.achs_nr 1\nEnde\n# a remark\n....\n", "axis.lis").findings == []
+
+
 def axis(text: str) -> AxisParams:
     parsed = parse_axis_list(text, "axis.lis")
     assert errors(parsed) == []

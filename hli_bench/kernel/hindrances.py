@@ -1,0 +1,41 @@
+"""What a PLC keeps from happening, in words for people: motion that it holds, commands of it that do not count."""
+
+from hli_bench.kernel.core import Core
+from hli_bench.laws.rows import JOG, SEGMENTS
+
+_CHANNEL = "ch/1/bahn_mc_control"
+
+
+def holding(core: Core) -> list[str]:
+    """Return the elements that make motion stand which has been commanded, none when nothing does."""
+    path, axes = core.rows.path[0], core.rows.axis
+    moves = [bool(row["mode"] == JOG and row["jog_velocity"]) for row in axes]
+    found = []
+    if not core.path.idle:
+        segment = core.rows.segment[core.path.segment % SEGMENTS]
+        moves = [one or bool(of_path) for one, of_path in zip(moves, segment["moves"], strict=True)]
+        if path["hold"]:
+            found.append(f"{_CHANNEL}/feedhold is TRUE")
+        if not path["override"]:
+            found.append(f"{_CHANNEL}/override is 0")
+    for axis in core.setup.axes:
+        if not moves[axis.index] or axes[axis.index]["released"]:
+            continue
+        released = core.unit(axis.index, "lr_mc_control/release_feedhold").effective
+        what = "ipo_mc_control/feedhold is TRUE" if released else "lr_mc_control/release_feedhold is FALSE"
+        found.append(f"ax/{axis.number}/{what}")
+    return found
+
+
+def unheard(core: Core) -> list[str]:
+    """Return the control units with `enable_w` TRUE whose commands count for nothing, and why."""
+    return [f"{unit.path}: {unit.unheard}" for unit in core.units if unit.enabled and unit.unheard]
+
+
+def in_vain(core: Core, member: str) -> str:
+    """Return why a command, or the enabling of one, counts for nothing; "" when it counts or `member` is neither."""
+    element = core.image.layout.element(member)
+    if element.member not in ("enable_w", "command_w") or element.group not in core.units:
+        return ""
+    unit = core.units[element.group]
+    return "" if element.member == "enable_w" and not unit.enabled else unit.unheard

@@ -35,6 +35,7 @@ if ! new_enough .venv/bin/python || ! .venv/bin/python -m pip --version > /dev/n
 fi
 
 pip=(.venv/bin/python -m pip --quiet --disable-pip-version-check)
+echo "installing what $lock lists into .venv ..." >&2
 "${pip[@]}" install --require-hashes --requirement "$lock"
 # The build tools stand in the lock; without isolation pip does not fetch newer ones.
 "${pip[@]}" install --no-build-isolation --no-deps --editable .

@@ -231,7 +231,8 @@ class Bench:
 
     def state(self) -> dict[str, Any]:
         """Return one look at the bench: CNC mode, axes, drives, terminals, PLCs, late cycles."""
-        return state.look(self.config, self.engine, self._pace.lateness if self._pace else None)
+        lateness = self._pace.lateness if self._pace else None
+        return state.look(self.config, self.engine, self.terminal_layouts, lateness)
 
     def _advance(self, until: Callable[[], bool], limit: int) -> bool:
         while not until():

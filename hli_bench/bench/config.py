@@ -228,7 +228,9 @@ class _Loader:
         elif owner:
             self._unknown_axis(path, owner.removeprefix("axis."), axes, given)
         else:
-            self._fail(given, f"{path}: unknown key{_hint(path, axes)}")
+            self._fail(
+                given, f"{path}: unknown key{_hint(path, axes)}; `hli-bench machine schema` lists them"
+            )
 
     def _names_hold(self, names: Mapping[str, str], axes: Sequence[str], path: str, given: Given) -> bool:
         """Check the names within a path: axes, bits."""

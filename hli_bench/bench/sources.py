@@ -107,7 +107,7 @@ def parse_set(texts: Sequence[str]) -> dict[str, object]:
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals or not key.strip():
-            raise InputError(f"{text!r}: expected KEY=VALUE", file=SET)
+            raise InputError(f"{text!r}: expected KEY=VALUE, e.g. plant.probe.Z.face_mm=100", file=SET)
         found[key.strip()] = toml_value(value.strip())
     return found
 

@@ -1,5 +1,6 @@
 """One look at a bench: what `hli-bench state` and the key `cnc/state` show."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from hli_bench.base.units import mm
@@ -7,9 +8,12 @@ from hli_bench.bench.config import MachineConfig
 from hli_bench.protocols.canopen.cia402 import state_of
 from hli_bench.runtime.engine import Engine
 from hli_bench.shells.pacing import Lateness
+from hli_bench.wire.images import TerminalLayout
 
 
-def look(config: MachineConfig, engine: Engine, lateness: Lateness | None) -> dict[str, Any]:
+def look(
+    config: MachineConfig, engine: Engine, terminals: Sequence[TerminalLayout], lateness: Lateness | None
+) -> dict[str, Any]:
     """Return the state of a bench as plain data; positions in mm (degrees)."""
     kernel = engine.kernel
     axes = []
@@ -37,7 +41,7 @@ def look(config: MachineConfig, engine: Engine, lateness: Lateness | None) -> di
         "cycle": engine.cycle,
         "dc_ns": int(engine.dc_ns),
         "axes": axes,
-        "terminals": {name: data.hex() for name, data in images.items()},
+        "terminals": {terminal.name: terminal.values(images[terminal.name]) for terminal in terminals},
         "plcs": [{"name": plc.name, "period_cycles": plc.period_cycles} for plc in engine.plcs],
         "late_cycles": lateness.late if lateness else 0,
         "worst_lateness_us": lateness.worst_ns / 1000 if lateness else 0.0,

@@ -1,11 +1,13 @@
-"""`hli-bench machine check / schema`: machine folders."""
+"""`hli-bench machine check / schema / copy`: machine folders."""
 
 import argparse
+import shutil
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hli_bench.base.errors import InputError, NotEmulated
 from hli_bench.cli.drive import eds_of
-from hli_bench.cli.options import Commands
+from hli_bench.cli.options import Commands, machine_name
 
 if TYPE_CHECKING:
     from hli_bench.bench.config import MachineConfig
@@ -21,13 +23,32 @@ def add(commands: Commands) -> None:
     check.add_argument("machine", metavar="DIR", help="a folder, or the name of a machine of the package")
     check.add_argument("--set", metavar="KEY=VALUE", action="append", help="checked as `run` would take it")
     check.add_argument(
-        "--modbus", action="store_true", help="prints the Modbus map of the machine (not built)"
+        "--modbus", action="store_true", help="not built yet: prints the Modbus map of the machine"
     )
     check.set_defaults(execute=check_machine)
     schema = actions.add_parser(
         "schema", help="print every key of machine.toml: key: what it takes [default]: meaning"
     )
     schema.set_defaults(execute=print_schema)
+    copy = actions.add_parser(
+        "copy", help="copy a machine of the package into a folder, to begin one of your own"
+    )
+    copy.add_argument("machine", metavar="NAME", help="a machine of the package, or a folder")
+    copy.add_argument("folder", metavar="DIR", help="the new folder; it must not exist")
+    copy.set_defaults(execute=copy_machine)
+
+
+def copy_machine(arguments: argparse.Namespace) -> int:
+    """Copy the folder. Raises InputError when there is no such machine, or the new folder exists."""
+    from hli_bench.bench.config import machine_folder
+
+    source, target = machine_folder(machine_name(arguments.machine, "")), Path(arguments.folder)
+    try:
+        shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+    except OSError as error:
+        raise InputError(f"cannot be written: {error.strerror}", file=str(target)) from error
+    print(f"{target}: copied from {source}; use it with --machine {target}")
+    return 0
 
 
 def print_schema(arguments: argparse.Namespace) -> int:
@@ -41,11 +62,11 @@ def print_schema(arguments: argparse.Namespace) -> int:
 def check_machine(arguments: argparse.Namespace) -> int:
     """Check the folder and all it names. Raises InputError, and NotEmulated for what is not built."""
     if arguments.modbus:
-        raise NotEmulated("machine check --modbus")
+        raise NotEmulated("machine check --modbus is not built yet")
     from hli_bench.bench.config import load
     from hli_bench.bench.sources import parse_set
 
-    config = load(arguments.machine, parse_set(arguments.set or []))
+    config = load(machine_name(arguments.machine, ""), parse_set(arguments.set or []))
     check_named(config)
     for note in config.notes:
         print(f"{note.file}:{note.line}: {note.severity}: {note.message}")

@@ -67,14 +67,14 @@ def add_bench(parser: argparse.ArgumentParser, *, pace: str, zenoh: str | None) 
         "--can",
         metavar="BUS",
         type=bus,
-        help="inproc, socketcan:INTERFACE or socketcand:HOST:PORT (default inproc)",
+        help="inproc, or socketcan:INTERFACE (default inproc); socketcand:HOST:PORT is not built yet",
     )
     bench.add_argument(
         "--zenoh",
         metavar="ENDPOINT",
         help=f"where the HLI listens, e.g. {DEFAULT_ENDPOINT} (default {zenoh or 'off'})",
     )
-    bench.add_argument("--modbus", metavar="HOST:PORT", help="serves Modbus TCP there (default off)")
+    bench.add_argument("--modbus", metavar="HOST:PORT", help="not built yet: Modbus TCP")
     parser.set_defaults(default_pace=pace, default_zenoh=zenoh)
 
 
@@ -105,10 +105,10 @@ def bench_options(arguments: argparse.Namespace) -> BenchOptions:
     from hli_bench.bench.sources import parse_set
 
     if arguments.modbus is not None:
-        raise NotEmulated("--modbus")
+        raise NotEmulated("--modbus: Modbus TCP is not built yet")
     can = arguments.can or "inproc"
     if can.startswith("socketcand:"):
-        raise NotEmulated(f"--can {can}")
+        raise NotEmulated(f"--can {can}: the socketcand protocol is not built yet")
     pace = arguments.pace or arguments.default_pace
     if arguments.realtime and pace != "real":
         raise InputError(f"only with --pace real, the pace is {pace}", file="--realtime")
@@ -123,14 +123,14 @@ def bench_options(arguments: argparse.Namespace) -> BenchOptions:
     )
 
 
-def machine_name(text: str) -> str:
-    """Return the text of `--machine` if it is a folder or a machine of the package. Raises InputError."""
+def machine_name(text: str, place: str = "--machine") -> str:
+    """Return `text` if it is a folder or a machine of the package. Raises InputError that names `place`."""
     if not Path(text).is_dir():
         try:
             data_file("machines", text)
         except InputError as error:
             message = f"{text!r} is neither a machine of the package nor a folder with machine.toml"
-            raise InputError(message, file="--machine") from error
+            raise InputError(message, file=place) from error
     return text
 
 

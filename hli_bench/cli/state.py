@@ -29,6 +29,8 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(state, indent=2))
     else:
+        for axis in state["axes"]:
+            axis["statusword"] = f"0x{axis['statusword']:04X}"
         for line in tables.tree(state):
             print(line)
     return 0

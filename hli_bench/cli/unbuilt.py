@@ -22,7 +22,7 @@ def add(commands: Commands) -> None:
 
 def _command(commands: Commands, name: str, text: str) -> argparse.ArgumentParser:
     parser: argparse.ArgumentParser = commands.add_parser(
-        name, help=f"{text} (not built)", description=f"Not built: {text}."
+        name, help=f"not built yet: {text}", description=f"Not built yet: {text}."
     )
     parser.set_defaults(execute=refuse, refused=name)
     return parser
@@ -30,4 +30,4 @@ def _command(commands: Commands, name: str, text: str) -> argparse.ArgumentParse
 
 def refuse(arguments: argparse.Namespace) -> int:
     """Say that the command is not built."""
-    raise NotEmulated(f"hli-bench {arguments.refused}")
+    raise NotEmulated(f"hli-bench {arguments.refused} is not built yet")

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from struct import calcsize
+from struct import calcsize, unpack_from
 from typing import Final
 
 STRUCT_CODE: Final[Mapping[str, str]] = {
@@ -36,6 +36,13 @@ class TerminalLayout:
     def size(self) -> int:
         """Bytes of the whole image."""
         return max((offset + size_of(data_type) for _, data_type, offset in self.entries), default=0)
+
+    def values(self, image: bytes) -> dict[str, bool | int | float]:
+        """Return the entries of an image by name."""
+        return {
+            entry: unpack_from("<" + STRUCT_CODE[data_type], image, offset)[0]
+            for entry, data_type, offset in self.entries
+        }
 
 
 @dataclass(frozen=True, slots=True)

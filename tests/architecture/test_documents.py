@@ -5,12 +5,18 @@ import re
 import shlex
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from hli_bench import Bench
+from hli_bench.kernel.decoder import commands, control, expressions, words
+
 ROOT = Path(__file__).resolve().parents[2]
-DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")])
+PAGES = ("README.md", "CHANGELOG.md", "programs/README.md")
+DOCUMENTS = sorted([*(ROOT / page for page in PAGES), *(ROOT / "docs").rglob("*.md")])
 DECISIONS = sorted((ROOT / "docs" / "decisions").glob("*.md"))
 
 BLOCK = re.compile(r"^```console\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -81,6 +87,32 @@ def test_a_command_that_is_shown_exists_with_its_options(words: tuple[str, ...])
 @pytest.mark.parametrize("example", _examples(ROOT / "README.md"), ids=lambda text: text.splitlines()[0])
 def test_the_examples_of_the_readme_run(example: str) -> None:
     exec(compile(example, "README.md", "exec"), {})
+
+
+def test_the_plc_script_and_the_test_that_the_interfaces_show_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, bench: Callable[..., Bench]
+) -> None:
+    """As a reader would take them over: the script in a file, the test beside it."""
+    examples = _examples(ROOT / "docs" / "interfaces.md")
+    (script,) = [text for text in examples if "class Probing" in text]
+    (test,) = [text for text in examples if "my_plc.py" in text]
+    (tmp_path / "my_plc.py").write_text(script)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(compile(test, "interfaces.md", "exec"), names)
+    names["test_the_face_is_found"](bench)
+
+
+def test_the_built_words_of_the_nc_language_are_those_listed() -> None:
+    text = (ROOT / "docs" / "interfaces.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| ([a-zG][a-zA-Z ]+) \| (.*) \|$", text, re.MULTILINE))
+    takes_axes, _, in_force = rows["G functions"].partition(";")
+    listed = {int(number) for number in re.findall(r"G(\d+)", takes_axes)}
+    assert listed == {*words.TAKING_AXES, 0, 1, 4, 90, 91}
+    assert {int(number) for number in re.findall(r"G(\d+)", in_force)} == words.IN_FORCE
+    assert set(re.findall(r"#([A-Z]+)", rows["commands"])) == set(commands.COMMANDS)
+    assert set(re.findall(r"\$([A-Z]+)", rows["statements"])) == set(control._WORDS)
+    assert rows["functions"].partition(",")[0].split() == list(expressions.FUNCTIONS)
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda document: str(document.relative_to(ROOT)))

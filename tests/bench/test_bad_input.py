@@ -49,10 +49,10 @@ def program(folder: Path, *blocks: str) -> Path:
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ("plnt.seed=3", "--set: plnt.seed: unknown key\n"),
-        ("sed=3", "--set: sed: unknown key (did you mean seed?)\n"),
+        ("plnt.seed=3", "--set: plnt.seed: unknown key; `hli-bench machine schema` lists them\n"),
+        ("sed=3", "--set: sed: unknown key (did you mean seed?); `hli-bench machine schema` lists them\n"),
         ("seed=-3", "--set: seed: -3 is not valid, expected integer 0..4294967295\n"),
-        ("seed", "--set: 'seed': expected KEY=VALUE\n"),
+        ("seed", "--set: 'seed': expected KEY=VALUE, e.g. plant.probe.Z.face_mm=100\n"),
         (
             "axis.Z.kenngr.measure.signl=PLC",
             "--set: axis.Z.kenngr.measure.signl: unknown parameter (did you mean kenngr.measure.signal?)\n",

@@ -18,7 +18,7 @@ DWELL_TIME_NEGATIVE: Final[ErrorSheet] = program_error("dwell_time_negative", 20
 OFFSET_NOT_REQUESTED: Final[ErrorSheet] = program_error(
     "offset_not_requested",
     20_024,
-    "G101 without a measured value: none was requested for axis {0}",
+    "G101 without a measured value: no measuring run has latched one for axis {0}",
     "axis name",
 )
 MEASURING_UNDER_TRC: Final[ErrorSheet] = program_error(

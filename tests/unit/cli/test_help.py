@@ -15,7 +15,7 @@ ACTIONS = {
     "hli": "{ls,get,set,watch}",
     "params": "{show,check}",
     "drive": "{show,check}",
-    "machine": "{check,schema}",
+    "machine": "{check,schema,copy}",
     "trace": "{show,diff,export}",
 }
 LIGHT = """

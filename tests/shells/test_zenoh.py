@@ -283,7 +283,7 @@ def test_the_client_lists_gets_and_sets_elements(bench: SmallBench, elsewhere: A
         ("io/probe/ch2/latch_neg", "UNS64", "", "r"),
         ("io/cams/ch2/input", "BOOL", "", "r"),
     ]
-    assert ask(bench, elsewhere, with_client, "set", f"{UNIT}/X_Command", "TRUE") is None
+    assert ask(bench, elsewhere, with_client, "set", f"{UNIT}/X_Command", "TRUE") == ""
     assert bench.value(f"{UNIT}/command_w") is True
     assert ask(bench, elsewhere, with_client, "get", f"{UNIT}/command_w") is True
     assert ask(bench, elsewhere, with_client, "get", "io/cams")["ch3/input"] is False

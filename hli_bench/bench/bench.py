@@ -23,6 +23,7 @@ from hli_bench.plc import load as load_script
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, LocalLink, Observer
 from hli_bench.shells.pacing import RealPace, Stopwatch
+from hli_bench.shells.patience import patience
 from hli_bench.shells.processes import Deadline, PlcProcess, free_endpoint
 from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 from hli_bench.shells.zenoh_server import HliServer
@@ -30,6 +31,9 @@ from hli_bench.shells.zenoh_server import HliServer
 START_UP_CYCLES: Final = 2000
 """Cycles within which all drives must have come into operation."""
 FOREVER: Final = 1 << 62
+COMPILING: Final = (
+    "compiling the laws of motion; once for each number of axes, until the laws or Python change"
+)
 IDLE_S: Final = 0.2
 """Longest wait for a client while time stands still."""
 ATTACH_S: Final = 30.0
@@ -110,6 +114,8 @@ class Bench:
             return
         if self.engine.cycle:
             raise BenchError("this bench has failed to start; make a new one")
+        with patience(self._on_note, COMPILING):
+            self.engine.compile()
         self.engine.power_on()
         if not self._advance(lambda: self.kernel.ready, START_UP_CYCLES):
             raise BenchError(f"not all drives came into operation within {START_UP_CYCLES} cycles")

@@ -256,13 +256,39 @@ def segment_dtype(axes: int) -> np.dtype[Any]:
     )
 
 
+DYNAMICS: Final = np.dtype(
+    [
+        ("up", "f8", (3,)),  # rate below the split velocity, rate above it (0.1 um/s2), split (0.1 um/s)
+        ("down", "f8", (3,)),
+        ("hold", "f8", (3,)),
+        ("limit", "f8"),  # greatest velocity, 0.1 um/s
+    ]
+)
+"""What an axis may do in a kind of block."""
+
+
+def plan_dtype(axes: int) -> np.dtype[Any]:
+    """Return the dtype of the end of the prepared path for `axes` axes (0.1 um, 0.1 um/s)."""
+    return np.dtype(
+        [
+            ("end", "f8", (axes,)),
+            ("joined", "u1"),  # the next segment may follow without a stop
+            ("direction", "f8", (axes,)),  # of the last segment
+            ("velocity", "f8"),  # its feed
+            ("linear", "u1", (axes,)),  # axes that the F word counts before the others
+        ],
+        align=True,
+    )
+
+
 @dataclass(slots=True)
 class KernelRows:
-    """The kernel's numbers: axis (n,), path (1,), segment (SEGMENTS,), watch (m,), history (H, n), log (L, n)."""
+    """The numbers of the kernel: axis (n,), path, plan (1,), segment, watch (m,), history (H, n), log (L, n)."""
 
     axis: Rows
     path: Rows
     segment: Rows
+    plan: Rows
     watch: Rows
     history: NDArray[np.int64]
     log: Rows
@@ -274,6 +300,7 @@ class KernelRows:
             axis=np.zeros(axes, AXIS),
             path=np.zeros(1, PATH_ROW),
             segment=np.zeros(SEGMENTS, segment_dtype(axes)),
+            plan=np.zeros(1, plan_dtype(axes)),
             watch=np.zeros(watches, WATCH),
             history=np.zeros((HISTORY_CYCLES, axes), np.int64),
             log=np.zeros((LOG_CYCLES, axes), LOG),

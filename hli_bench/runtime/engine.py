@@ -12,6 +12,7 @@ from hli_bench.base.time import Ns
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.records import Emitted
 from hli_bench.laws import stride as law
+from hli_bench.laws.compiled import straight
 from hli_bench.laws.rows import LOG_CYCLES, MachineRows, Rows
 from hli_bench.protocols.hli.access import Access, Refusal
 from hli_bench.runtime.machine_side import SYNC, MachineSide
@@ -128,6 +129,7 @@ class Engine:
         self.lost: list[str] = []
         self._orders: list[CanFrame] = []
         self._decide = True
+        self._law = law.stride
         self._cycle_ns = kernel.setup.cycle_ns
         self._tick = NO_TICK
         self._loud = 0
@@ -150,11 +152,16 @@ class Engine:
             machine.edges,
             pending,
         )
+        self._times = (self._cycle_ns, link.sub_steps, kernel.setup.dc_epoch_ns)
 
     @property
     def dc_ns(self) -> Ns:
         """DC time of the last completed cycle."""
         return Ns(self.kernel.setup.dc_epoch_ns + self.cycle * self._cycle_ns)
+
+    def compile(self) -> None:
+        """Have the law of a stride compiled for these rows where it is not yet, and call it without detours."""
+        self._law = straight(law.stride, *self._rows, 0, 0, law.MACHINE, 0, *self._times)
 
     def power_on(self) -> None:
         """Boot the drives and begin the start-up of the kernel."""
@@ -276,16 +283,7 @@ class Engine:
 
     def _stride(self, cycle: int, cycles: int, phase: int) -> tuple[int, int]:
         stop, self._decide = (self._decide, False) if phase != law.ACT else (False, self._decide)
-        result: tuple[int, int] = law.stride(
-            *self._rows,
-            cycle,
-            cycles,
-            phase,
-            stop,
-            self._cycle_ns,
-            self.link.sub_steps,
-            self.kernel.setup.dc_epoch_ns,
-        )
+        result: tuple[int, int] = self._law(*self._rows, cycle, cycles, phase, int(stop), *self._times)
         if stop and result[1] == law.SENSE:
             self._decide = True
         return result

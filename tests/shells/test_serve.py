@@ -142,7 +142,7 @@ def test_what_cannot_be_set_is_bad_input(
 def test_state_shows_axes_drives_terminals_and_plcs(serve: Any, do: Callable[..., list[str]]) -> None:
     bench = serve("--pace", "free")
     shown = "\n".join(do("state", "--connect", bench.endpoint))
-    assert "0x1237" in shown
+    assert " 0x0237\n" in shown
     assert "ch2/input: FALSE" in shown
     assert "held_by: none" in shown
     for name in ("X2", "operation enabled", "probe", "cams", "late_cycles"):

@@ -1,11 +1,14 @@
 """Which accelerations act in which block: G00, G01, feedhold, and the table of a measuring run."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from hli_bench.base.units import tenth_um_from_um_per_s, tenth_um_per_s2
 from hli_bench.kernel.setup import AxisSetup
+from hli_bench.laws.rows import DYNAMICS, Rows
 from hli_bench.manual.axis.fallbacks import (
     TwoStepSlope,
     feed_slope,
@@ -77,14 +80,14 @@ def homing_rate(axis: AxisSetup) -> float:
     return tenth_um_per_s2(homing_acceleration(axis.params.getriebe[0]))
 
 
-def along(dynamics: Sequence[Dynamics], direction: Sequence[float]) -> Dynamics:
-    """Return what the axes allow a path that moves them with `direction` (components of the unit path)."""
-    parts = [abs(part) for part in direction]
-    return Dynamics(
-        ramp_along([one.up for one in dynamics], parts),
-        ramp_along([one.down for one in dynamics], parts),
-        ramp_along([one.hold for one in dynamics], parts),
-        min(one.limit / part for one, part in zip(dynamics, parts, strict=True)),
+def rows(dynamics: Iterable[Dynamics]) -> Rows:
+    """Return what the axes may do as rows for the laws, shape (n,)."""
+    return np.array(
+        [
+            (*((ramp.low, ramp.high, ramp.split) for ramp in (one.up, one.down, one.hold)), one.limit)
+            for one in dynamics
+        ],
+        DYNAMICS,
     )
 
 

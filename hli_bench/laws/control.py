@@ -3,6 +3,7 @@
 import math
 
 from hli_bench.laws.compiled import law
+from hli_bench.laws.integers import wrap32
 from hli_bench.laws.profile import advance, ramp
 from hli_bench.laws.rows import (
     BRAKE,
@@ -26,20 +27,14 @@ from hli_bench.laws.rows import (
     W_SEGMENT,
     W_STANDSTILL_LAG_OVER,
     W_STATUSWORD,
+    Row,
     Rows,
 )
 
 
 @law
-def wrap32(value: int) -> int:
-    """Return `value` as it shows in a signed 32-bit object."""
-    return (value + 0x80000000) % 0x100000000 - 0x80000000
-
-
-@law
-def take_feedback(axis: Rows, history: Rows, number: int, cycle: int) -> None:
+def take_feedback(row: Row, history: Rows, number: int, cycle: int) -> None:
     """Take the received actual position of one axis: unwrap it, convert it, keep it in the history."""
-    row = axis[number]
     row["feedback"] += wrap32(row["received"] - row["feedback"])
     history[cycle % HISTORY_CYCLES, number] = row["feedback"]
     row["actual"] = (row["feedback"] - row["reference"]) / row["increments_per_unit"]
@@ -50,28 +45,26 @@ def take_feedback(axis: Rows, history: Rows, number: int, cycle: int) -> None:
 
 
 @law
-def moved_within(axis: Rows, history: Rows, number: int, cycles: int, cycle: int) -> float:
+def moved_within(one: Row, history: Rows, number: int, cycles: int, cycle: int) -> float:
     """Return how far (0.1 um) the actual position moved over the last `cycles` cycles."""
     back = min(cycles, HISTORY_CYCLES - 1)
     if cycle < back:
         return math.inf
     now = history[cycle % HISTORY_CYCLES, number]
     then = history[(cycle - back) % HISTORY_CYCLES, number]
-    return abs((now - then) / axis[number]["increments_per_unit"])
+    return abs((now - then) / one["increments_per_unit"])
 
 
 @law
-def holds(axis: Rows, path: Rows, watch: Rows, number: int, cycle: int) -> bool:
-    """Return whether condition `number` holds in this cycle."""
-    row = watch[number]
+def holds(one: Row, path: Row, row: Row, cycle: int) -> bool:
+    """Return whether condition `row`, about axis `one`, holds in this cycle."""
     kind = row["kind"]
     if kind == W_CYCLE:
         return cycle >= row["limit"]
     if kind == W_PATH_DONE:
-        return path[0]["state"] == IDLE
+        return path["state"] == IDLE
     if kind == W_SEGMENT:
-        return path[0]["head"] >= row["limit"] or path[0]["state"] == IDLE
-    one = axis[row["axis"]]
+        return path["head"] >= row["limit"] or path["state"] == IDLE
     if kind == W_JOG_STOPPED:
         return one["velocity"] == 0.0 and one["jog_velocity"] == 0.0
     if kind == W_LAG_OVER:
@@ -91,19 +84,21 @@ def holds(axis: Rows, path: Rows, watch: Rows, number: int, cycle: int) -> bool:
         return abs(one["actual"] - row["window"]) >= row["limit"]
     if kind == W_FIXED_STOP:
         # limit: position lag, 0 = not asked
-        return (row["limit"] <= 0.0 or abs(one["lag"]) > row["limit"]) and path[0]["s"] >= row["value"]
+        return (row["limit"] <= 0.0 or abs(one["lag"]) > row["limit"]) and path["s"] >= row["value"]
     return False
 
 
 @law
-def lasted(axis: Rows, watch: Rows, history: Rows, number: int, cycle: int) -> bool:
-    """Return whether condition `number` has held long enough; a fixed stop asks how far the axis moved meanwhile."""
-    row = watch[number]
+def lasted(one: Row, row: Row, history: Rows, cycle: int) -> bool:
+    """Return whether condition `row`, about axis `one`, has held long enough.
+
+    A fixed stop asks how far the axis moved meanwhile.
+    """
     if row["count"] < row["cycles"]:
         return False
     if row["kind"] != W_FIXED_STOP or row["window"] < 0.0:
         return True
-    return moved_within(axis, history, row["axis"], row["cycles"], cycle) <= row["window"]
+    return moved_within(one, history, row["axis"], row["cycles"], cycle) <= row["window"]
 
 
 @law
@@ -116,11 +111,11 @@ def ask_watches(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) 
             break
         if row["kind"] == W_FREE:
             continue
-        if not holds(axis, path, watch, w, cycle):
+        if not holds(axis[row["axis"]], path[0], row, cycle):
             row["count"] = 0
             continue
         row["count"] += 1
-        if row["fired"] == 0 and lasted(axis, watch, history, w, cycle):
+        if row["fired"] == 0 and lasted(axis[row["axis"]], row, history, cycle):
             row["fired"] = 1
             fired += 1
     return fired
@@ -130,14 +125,14 @@ def ask_watches(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) 
 def sense(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) -> int:
     """First half of a kernel cycle: actual values, history, conditions; return how many of these are now met."""
     for number in range(axis.shape[0]):
-        take_feedback(axis, history, number, cycle)
+        take_feedback(axis[number], history, number, cycle)
     return ask_watches(axis, path, watch, history, cycle)
 
 
 @law
-def path_held(axis: Rows, path: Rows, one: Rows) -> bool:
+def path_held(axis: Rows, path: Row, one: Row) -> bool:
     """Tell whether the path must stand: feedhold of the channel, or an axis it moves is not released."""
-    if path[0]["hold"]:
+    if path["hold"]:
         return True
     for number in range(axis.shape[0]):
         if one["moves"][number] and axis[number]["released"] == 0:
@@ -146,9 +141,8 @@ def path_held(axis: Rows, path: Rows, one: Rows) -> bool:
 
 
 @law
-def walk_path(axis: Rows, path: Rows, segment: Rows, time: float) -> None:
+def walk_path(axis: Rows, row: Row, segment: Rows, time: float) -> None:
     """Advance along the prepared segments by `time` seconds."""
-    row = path[0]
     while time > 0.0 and row["state"] != IDLE:
         one = segment[row["head"] % SEGMENTS]
         split = one["split"]
@@ -162,7 +156,7 @@ def walk_path(axis: Rows, path: Rows, segment: Rows, time: float) -> None:
             low = row["brake"][0]
             high = row["brake"][1]
             split = row["brake_split"]
-        elif path_held(axis, path, one):
+        elif path_held(axis, row, one):
             wanted = 0.0
             low = one["hold"][0]
             high = one["hold"][1]
@@ -201,7 +195,7 @@ def act(axis: Rows, path: Rows, segment: Rows, cycle_ns: int) -> None:
     time = cycle_ns * 1e-9
     running = path[0]["state"] != IDLE
     if running:
-        walk_path(axis, path, segment, time)
+        walk_path(axis, path[0], segment, time)
     one = segment[path[0]["head"] % SEGMENTS]
     for number in range(axis.shape[0]):
         row = axis[number]

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 Rows = NDArray[Any]
 """A structured array; its dtype is one of this module."""
+Row = Any
+"""One element of such an array. Laws about one thing take its row: unlike an array it costs nothing to pass on."""
 
 HISTORY_CYCLES: Final = 4096
 """Depth of the position history in cycles."""

@@ -3,7 +3,7 @@
 import math
 
 from hli_bench.laws.compiled import law
-from hli_bench.laws.rows import IDLE, PATH, RUN, SEGMENTS, Rows
+from hli_bench.laws.rows import IDLE, PATH, RUN, SEGMENTS, Row, Rows
 
 NOTHING = -1
 """Instead of the number of a segment: the block moves nothing."""
@@ -14,7 +14,7 @@ STRAIGHT = 1e-9
 
 
 @law
-def path_length(one: Rows, linear: Rows) -> float:
+def path_length(one: Row, linear: Rows) -> float:
     """Return the length that the F word counts: of the linear axes when any moves, else of all that move."""
     squares = 0.0
     for number in range(linear.shape[0]):
@@ -30,7 +30,7 @@ def path_length(one: Rows, linear: Rows) -> float:
 
 
 @law
-def take_dynamics(one: Rows, dynamics: Rows) -> float:
+def take_dynamics(one: Row, dynamics: Rows) -> float:
     """Give a segment the rates that exceed no axis's own; return the greatest velocity they leave."""
     limit = math.inf
     split = math.inf

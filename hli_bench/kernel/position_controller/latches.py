@@ -1,6 +1,6 @@
 """Latched positions: 32-bit counts of the drive, taken to the count that goes on over the borders of 32 bits."""
 
-from hli_bench.laws.control import wrap32
+from hli_bench.laws.integers import wrap32
 from hli_bench.laws.rows import Rows
 
 

@@ -12,8 +12,8 @@ from drives.cia402.states import State, state_of
 from drives.models import servo402
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import Ns
-from hli_bench.laws.machine import supervise
 from hli_bench.laws.rows import LOG, SERVO
+from hli_bench.laws.servo import supervise
 from hli_bench.protocols.canopen.aborts import AbortCode
 from hli_bench.wire.can import CanFrame
 
@@ -485,7 +485,7 @@ class TestWithTheFollowingErrorLaw:
         rows["following_error"] = error
         for cycle in range(1, 100):
             rows["status_flags"] = 0
-            supervise(rows, 0, 1_000_000)
+            supervise(rows[0], 1_000_000)
             status = drive.exchange(0x0F, 0, 0, Ns(cycle * 1_000_000))
             if state_of(status) is not State.OPERATION_ENABLED:
                 return cycle

@@ -18,8 +18,8 @@ from drives.cia402.touch_probe import (
 )
 from drives.models import servo402
 from hli_bench.base.time import Ns
-from hli_bench.laws.machine import probe_arm, probe_edge
 from hli_bench.laws.rows import SERVO
+from hli_bench.laws.touch_probe import probe_arm, probe_edge
 
 
 @pytest.mark.parametrize(
@@ -53,19 +53,19 @@ def test_armed_drive_latches_its_edge_once(number: int, positive: bool) -> None:
     rows: Any = np.zeros(1, SERVO)
     drive = servo402.create("Z", 1, rows[0], {})
     drive.exchange(0, 0, probe_input(number, positive=positive), Ns(0))
-    probe_arm(rows, 0)
+    probe_arm(rows[0])
     values = drive.device.values
     assert values.get(0x60B9) == ProbeStatus.ENABLED << 8 * (number - 1)
     slot = 2 * (number - 1) + (not positive)
     for position, at in ((-500, (1 << 32) + 7), (900, 9)):
-        probe_edge(rows, 0, number - 1, int(not positive), 1, 0, 0)
-        probe_edge(rows, 0, number - 1, int(positive), position, at, 0)
+        probe_edge(rows[0], number - 1, int(not positive), 1, 0, 0)
+        probe_edge(rows[0], number - 1, int(positive), position, at, 0)
     assert values.get(0x60BA + slot) == -500
     assert values.get(0x60D1 + slot) == 7
     stored = ProbeStatus.POSITIVE_STORED if positive else ProbeStatus.NEGATIVE_STORED
     assert values.get(0x60B9) == (ProbeStatus.ENABLED | stored) << 8 * (number - 1)
     drive.exchange(0, 0, 0, Ns(0))
-    probe_arm(rows, 0)
+    probe_arm(rows[0])
     assert values.get(0x60B9) == 0
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from hli_bench.laws.machine import channel_edge, channel_image
+from hli_bench.laws.channels import channel_edge, channel_image
 from hli_bench.laws.rows import CHANNEL, MachineRows
 from hli_bench.plant.settings import Face
 from hli_bench.terminals.settings import Channel
@@ -22,12 +22,12 @@ def _channel(delay_ns: int = 0, single_event: bool = False) -> np.ndarray:
 
 
 def _edge(rows: np.ndarray, level: int, at_ns: int) -> None:
-    channel_edge(rows, 0, level, at_ns, EPOCH_NS)
+    channel_edge(rows[0], level, at_ns, EPOCH_NS)
 
 
 def _image(rows: np.ndarray, now_ns: int) -> tuple[int, int, int, int]:
     """Return input, status, latches (0 or bench time)."""
-    channel_image(rows, 0, now_ns, EPOCH_NS)
+    channel_image(rows[0], now_ns, EPOCH_NS)
     row = rows[0]
     latches = [int(row[name]) - EPOCH_NS if row[name] else 0 for name in ("latch_pos", "latch_neg")]
     return int(row["input"]), int(row["status"]), latches[0], latches[1]

@@ -8,7 +8,8 @@ import pytest
 
 from hli_bench.kernel import watches
 from hli_bench.kernel.watches import Condition, Watches
-from hli_bench.laws.control import act, ask_watches, sense, take_feedback, wrap32
+from hli_bench.laws.control import act, ask_watches, sense, take_feedback
+from hli_bench.laws.integers import wrap32
 from hli_bench.laws.rows import (
     BRAKE,
     FOLLOW,
@@ -80,7 +81,7 @@ def test_feedback_is_unwrapped_and_kept(rows):
     for cycle, received in enumerate((2**31 - 10, -(2**31) + 10), start=1):
         rows.axis[0]["feedback"] = 2**31 - 10 if cycle == 1 else rows.axis[0]["feedback"]
         rows.axis[0]["received"] = received
-        take_feedback(rows.axis, rows.history, 0, cycle)
+        take_feedback(rows.axis[0], rows.history, 0, cycle)
 
     assert rows.axis[0]["feedback"] == 2**31 + 10
     assert list(rows.history[1:3, 0]) == [2**31 - 10, 2**31 + 10]
@@ -90,7 +91,7 @@ def test_feedback_is_unwrapped_and_kept(rows):
 def test_lag_is_behind_the_set_point_that_is_due(rows):
     """The set point sent in the cycle before is where a drive without lag stands now."""
     rows.axis[0]["past"], rows.axis[0]["command"], rows.axis[0]["received"] = 90.0, 100.0, 85
-    take_feedback(rows.axis, rows.history, 0, 1)
+    take_feedback(rows.axis[0], rows.history, 0, 1)
 
     assert rows.axis[0]["lag"] == 5.0
 
@@ -333,6 +334,6 @@ def test_negative_counting_direction(rows):
 
     assert rows.axis[0]["target"] == -2000
     rows.axis[0]["received"] = -2000
-    take_feedback(rows.axis, rows.history, 0, 1)
+    take_feedback(rows.axis[0], rows.history, 0, 1)
     assert rows.axis[0]["actual"] == 1000.0
     assert np.isclose(rows.axis[0]["lag"], 0.0)

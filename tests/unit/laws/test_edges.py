@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hli_bench.laws.machine import crossing
+from hli_bench.laws.switches import crossing
 from hli_bench.plant.settings import Cam, Face, Probe
 from hli_bench.terminals.settings import Channel
 

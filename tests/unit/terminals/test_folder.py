@@ -8,7 +8,7 @@ import pytest
 
 from hli_bench.base.errors import InputError, NotEmulated
 from hli_bench.base.time import Ns
-from hli_bench.laws.machine import channel_edge, channel_image
+from hli_bench.laws.channels import channel_edge, channel_image
 from hli_bench.laws.rows import MachineRows
 from hli_bench.terminals.settings import SINGLE_EVENT, TerminalSettings
 from hli_bench.terminals.terminal import Terminal, type_of, types
@@ -41,7 +41,7 @@ def _entries(terminal: Terminal, data: bytes) -> dict[str, int]:
 
 def _refresh(rows: np.ndarray, now_ns: int) -> None:
     for number in range(len(rows)):
-        channel_image(rows, number, now_ns, EPOCH_NS)
+        channel_image(rows[number], now_ns, EPOCH_NS)
 
 
 def test_the_models_of_the_folder() -> None:
@@ -66,7 +66,7 @@ def test_an_edge_at_a_cycle_border_shows_when_its_delay_is_over(model: str) -> N
     terminal = Terminal(settings, rows, 0, CYCLE_NS)
     delay = int(rows[1]["delay_ns"])
     due = -(-delay // CYCLE_NS) * CYCLE_NS
-    channel_edge(rows, 1, 1, CYCLE_NS, EPOCH_NS)
+    channel_edge(rows[1], 1, CYCLE_NS, EPOCH_NS)
     for now in range(CYCLE_NS, 6 * CYCLE_NS, CYCLE_NS):
         _refresh(rows, now)
         values = _entries(terminal, terminal.step(Ns(now)).data)
@@ -92,9 +92,9 @@ def test_el1252_image_byte_for_byte() -> None:
     settings = _settings("EL1252")
     rows = _rows(settings)
     terminal = Terminal(settings, rows, 0, CYCLE_NS)
-    channel_edge(rows, 1, 1, 200_000, EPOCH_NS)
-    channel_edge(rows, 1, 0, 700_000, EPOCH_NS)
-    channel_edge(rows, 0, 1, 900_000, EPOCH_NS)
+    channel_edge(rows[1], 1, 200_000, EPOCH_NS)
+    channel_edge(rows[1], 0, 700_000, EPOCH_NS)
+    channel_edge(rows[0], 1, 900_000, EPOCH_NS)
     _refresh(rows, CYCLE_NS)
     image = terminal.step(Ns(CYCLE_NS))
     latches = (EPOCH_NS + 900_000, 0, EPOCH_NS + 200_000, EPOCH_NS + 700_000)
@@ -106,7 +106,7 @@ def test_the_image_is_refreshed_only_every_period() -> None:
     settings = _settings("EL1252", period_us=4000)
     rows = _rows(settings)
     terminal = Terminal(settings, rows, 0, CYCLE_NS)
-    channel_edge(rows, 0, 1, 1_500_000, EPOCH_NS)
+    channel_edge(rows[0], 1, 1_500_000, EPOCH_NS)
     seen = []
     for now in range(CYCLE_NS, 6 * CYCLE_NS, CYCLE_NS):
         _refresh(rows, now)

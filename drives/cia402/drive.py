@@ -36,6 +36,7 @@ STANDSTILL_TURNS_PER_S: Final = 0.01
 _LAW_FLAGS: Final = int(
     StatusBit.TARGET_REACHED | StatusBit.INTERNAL_LIMIT | StatusBit.DRIVE_FOLLOWS | StatusBit.FOLLOWING_ERROR
 )
+_HALT: Final = int(ControlBit.HALT)
 _ALWAYS: Final = int(StatusBit.VOLTAGE_ENABLED | StatusBit.REMOTE)
 _POWERED: Final = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
 _TORQUE_LIMITS: Final = (objects.MAX_TORQUE, objects.POSITIVE_TORQUE_LIMIT, objects.NEGATIVE_TORQUE_LIMIT)
@@ -126,9 +127,10 @@ class Drive:
     @property
     def holding(self) -> bool:
         """Whether the drive stands on its demand instead of following the target."""
-        halted = self.state is State.OPERATION_ENABLED and bool(self._word & ControlBit.HALT)
-        stopping = self.state in {State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE}
-        return halted or stopping or self._destination is not None
+        if self.state is State.OPERATION_ENABLED:
+            return bool(self._word & _HALT) or self._destination is not None
+        stopping = self.state in (State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
+        return stopping or self._destination is not None
 
     def power_on(self) -> list[CanFrame]:
         """Boot the node."""

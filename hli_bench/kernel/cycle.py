@@ -18,6 +18,7 @@ from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.records import Emitted
 from hli_bench.kernel.sequence import END, Sequence
 from hli_bench.kernel.setup import KernelSetup
+from hli_bench.laws.compiled import straight
 from hli_bench.laws.publish import publish_positions
 from hli_bench.laws.rows import FOLLOW, KernelRows
 from hli_bench.manual.errors import hli as hli_errors
@@ -51,6 +52,7 @@ class Kernel:
         layout = self.image.layout
         areas = [f"ax/{axis.number}/lr_state" for axis in setup.axes]
         self._positions = np.array([layout.element(f"{area}/active_position_r").offset for area in areas])
+        self._publish = publish_positions
         self._show_heads()
 
     @property
@@ -67,6 +69,10 @@ class Kernel:
     def telegram_ids(self) -> frozenset[int]:
         """COB-IDs of the telegrams that every cycle brings."""
         return self._telegrams.cob_ids
+
+    def compile(self) -> None:
+        """Have the laws that are called from here compiled where they are not yet."""
+        self._publish = straight(publish_positions, self.core.rows.axis, self._image_bytes, self._positions)
 
     def begin_start_up(self) -> None:
         """Begin to bring all drives into operation."""
@@ -158,7 +164,7 @@ class Kernel:
 
     def publish(self) -> None:
         """Bring the positions on the HLI up to date; called before somebody looks."""
-        publish_positions(self.core.rows.axis, self._image_bytes, self._positions)
+        self._publish(self.core.rows.axis, self._image_bytes, self._positions)
 
     def position_mm(self, axis: AxisIndex) -> float:
         """Return the actual position of an axis in mm (degrees)."""

@@ -18,7 +18,7 @@ STANDSTILL_CYCLES = 100
 class Monitoring:
     """Holds the permanent conditions of every axis."""
 
-    __slots__ = ("_core", "_emergency", "_fault", "_lag", "_tripped")
+    __slots__ = ("_core", "_emergency", "_fault", "_handles", "_lag", "_tripped")
 
     def __init__(self, core: Core) -> None:
         self._core = core
@@ -26,6 +26,8 @@ class Monitoring:
         self._lag: dict[AxisIndex, tuple[int, int]] = {}
         self._emergency: dict[AxisIndex, int] = {}
         self._tripped: set[AxisIndex] = set()
+        self._handles: list[int] = []
+        """Of all conditions."""
 
     def switch_on(self, axis: AxisIndex) -> None:
         """Begin to watch an axis whose drive is in operation."""
@@ -38,6 +40,7 @@ class Monitoring:
         self.lag(axis, on=False)
         if axis in self._fault:
             self._core.watches.forget(self._fault.pop(axis))
+        self._gather()
 
     def lag(self, axis: AxisIndex, *, on: bool) -> None:
         """Switch the position lag monitoring of an axis; off during a run to a fixed stop."""
@@ -45,13 +48,15 @@ class Monitoring:
             self._core.watches.forget(handle)
         params = self._core.axis(axis).params
         gear = params.getriebe[0]
-        if not on or gear.slep_ueberw_typ != LAG_TYPE or params.lr_param.suppress_pos_lag_error:
-            return
-        delay = 1 + gear.pos_lag_mon_error_delay_time * 1000 // self._core.setup.cycle_ns
-        self._lag[axis] = (
-            self._core.watches.watch(lag_over(axis, gear.slep_max, delay)),
-            self._core.watches.watch(standstill_lag_over(axis, gear.slep_min, max(delay, STANDSTILL_CYCLES))),
-        )
+        if on and gear.slep_ueberw_typ == LAG_TYPE and not params.lr_param.suppress_pos_lag_error:
+            delay = 1 + gear.pos_lag_mon_error_delay_time * 1000 // self._core.setup.cycle_ns
+            standing = standstill_lag_over(axis, gear.slep_min, max(delay, STANDSTILL_CYCLES))
+            watch = self._core.watches.watch
+            self._lag[axis] = watch(lag_over(axis, gear.slep_max, delay)), watch(standing)
+        self._gather()
+
+    def _gather(self) -> None:
+        self._handles = [*self._fault.values(), *(handle for pair in self._lag.values() for handle in pair)]
 
     def rearm(self) -> None:
         """Watch the position lag again where it has tripped: no program runs without."""
@@ -73,6 +78,8 @@ class Monitoring:
     def check(self, source: Source) -> list[AxisIndex]:
         """Report what was found since the last call; return the axes with a drive fault."""
         core = self._core
+        if not core.watches.any_met(self._handles):
+            return []
         for axis, (moving, standing) in list(self._lag.items()):
             row = core.row(axis)
             gear = core.axis(axis).params.getriebe[0]

@@ -1,6 +1,8 @@
 """Conditions as data: rows that the compiled `sense` asks once a cycle, handed out and taken back here."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from heapq import heappop, heappush
 from typing import Final
 
 from hli_bench.base.errors import BenchError
@@ -95,10 +97,13 @@ def cycle_reached(cycle: int) -> Condition:
 class Watches:
     """Hands out watch rows, the lowest first; a handle is the number of its row. Rows behind the last cost nothing."""
 
-    __slots__ = ("_row", "_used")
+    __slots__ = ("_fired", "_gaps", "_kind", "_row", "_used")
 
     def __init__(self, watch: law.Rows) -> None:
         self._row = watch
+        self._kind, self._fired = watch["kind"], watch["fired"]
+        self._gaps: list[int] = []
+        """Rows that were given back, as a heap; those from `_used` on do not count."""
         self._used = 0
 
     def watch(self, condition: Condition) -> int:
@@ -112,28 +117,33 @@ class Watches:
         row["value"] = condition.value
         row["cycles"] = condition.cycles
         row["count"] = 0
-        row["fired"] = 0
-        row["kind"] = condition.kind
+        self._fired[handle] = 0
+        self._kind[handle] = condition.kind
         return handle
 
     def met(self, handle: int) -> bool:
         """Tell whether the condition has been met since it was put under watch."""
-        return bool(self._row[handle]["fired"])
+        return bool(self._fired[handle])
+
+    def any_met(self, handles: Sequence[int]) -> bool:
+        """Tell whether one of several conditions has been met."""
+        return any(map(self._fired.item, handles))
 
     def forget(self, handle: int) -> None:
         """Take a condition back."""
-        kind = self._row["kind"]
-        kind[handle] = law.W_FREE if handle < self._used else law.W_NONE
-        self._row[handle]["fired"] = 0
-        while self._used and kind[self._used - 1] == law.W_FREE:
+        self._fired[handle] = 0
+        self._kind[handle] = law.W_FREE
+        heappush(self._gaps, handle)
+        while self._used and self._kind[self._used - 1] == law.W_FREE:
             self._used -= 1
-            kind[self._used] = law.W_NONE
+            self._kind[self._used] = law.W_NONE
 
     def _free(self) -> int:
         """Return the lowest row that is not in use."""
-        gaps = (self._row["kind"][: self._used] == law.W_FREE).nonzero()[0]
-        if len(gaps):
-            return int(gaps[0])
+        while self._gaps:
+            handle = heappop(self._gaps)
+            if handle < self._used:
+                return handle
         if self._used == len(self._row):
             raise BenchError(f"more than {len(self._row)} conditions to be watched at the same time")
         self._used += 1

@@ -5,6 +5,7 @@ machine rows in encoder increments, rad, Nm and seconds; instants are whole ns s
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Final
 
 import numpy as np
@@ -236,6 +237,7 @@ LOG: Final = np.dtype(
 )
 
 
+@cache
 def segment_dtype(axes: int) -> np.dtype[Any]:
     """Return the dtype of a path segment for `axes` axes (lengths 0.1 um, velocities 0.1 um/s)."""
     return np.dtype(
@@ -269,6 +271,7 @@ DYNAMICS: Final = np.dtype(
 """What an axis may do in a kind of block."""
 
 
+@cache
 def plan_dtype(axes: int) -> np.dtype[Any]:
     """Return the dtype of the end of the prepared path for `axes` axes (0.1 um, 0.1 um/s)."""
     return np.dtype(

@@ -160,7 +160,8 @@ class Engine:
         return Ns(self.kernel.setup.dc_epoch_ns + self.cycle * self._cycle_ns)
 
     def compile(self) -> None:
-        """Have the law of a stride compiled for these rows where it is not yet, and call it without detours."""
+        """Have the laws compiled for these rows where they are not yet, and call them without detours."""
+        self.kernel.compile()
         self._law = straight(law.stride, *self._rows, 0, 0, law.MACHINE, 0, *self._times)
 
     def power_on(self) -> None:

@@ -40,6 +40,8 @@ class ObjectChannel:
     def begin(self, now: Ns) -> list[CanFrame]:
         """Start what waits where the channel of its node is free; abort what is overdue."""
         frames: list[CanFrame] = []
+        if not self.busy:
+            return frames
         for node, client in self._clients.items():
             frames += client.tick(now)
             self._finish(node)

@@ -145,7 +145,7 @@ class Device:
         if self.nmt.state in {NmtState.PRE_OPERATIONAL, NmtState.OPERATIONAL}:
             frames += self._sdo.tick(now) + self.emcy.tick(now)
         if self.nmt.state is NmtState.OPERATIONAL:
-            due = [tpdo.tick(now) for tpdo in self._pdos.tpdos]
+            due = [tpdo.tick(now) for tpdo in self._pdos.on_event]
             frames += [frame for frame in due if frame is not None]
         return sorted(frames, key=lambda frame: frame.cob_id)
 
@@ -155,7 +155,7 @@ class Device:
         if self.nmt.state in {NmtState.PRE_OPERATIONAL, NmtState.OPERATIONAL}:
             dues += [self._sdo.next_due(), self.emcy.next_due()]
         if self.nmt.state is NmtState.OPERATIONAL:
-            dues += [tpdo.next_due() for tpdo in self._pdos.tpdos]
+            dues += [tpdo.next_due() for tpdo in self._pdos.on_event]
         known = [due for due in dues if due is not None]
         return max(now, min(known)) if known else None
 

@@ -99,7 +99,7 @@ class NmtSlave:
 class ErrorControl:
     """Heartbeat producer (0x1017), else node guarding with life guarding (0x100C, 0x100D)."""
 
-    __slots__ = ("_heartbeat_at", "_life_until", "_slave", "_toggle", "_values", "lost")
+    __slots__ = ("_heartbeat_at", "_life_until", "_period_ms", "_slave", "_toggle", "_values", "lost")
 
     def __init__(self, values: ObjectValues, slave: NmtSlave) -> None:
         self._values = values
@@ -107,6 +107,7 @@ class ErrorControl:
         self._toggle = 0
         self._heartbeat_at: Ns | None = None
         self._life_until: Ns | None = None
+        self._period_ms = self._number(_PRODUCER)
         self.lost = False
         """The master's guarding stayed out for the life time."""
         if values.has(_PRODUCER):
@@ -117,12 +118,13 @@ class ErrorControl:
         self._toggle = 0
         self._heartbeat_at = None
         self._life_until = None
+        self._period_ms = self._number(_PRODUCER)
         self.lost = False
 
     def on_frame(self, frame: CanFrame, now: Ns) -> list[CanFrame]:
         """Answer a guarding request."""
         ours = frame.remote and frame.cob_id == ERROR_CONTROL_COB_ID + self._slave.node_id
-        if not ours or self._producer_ms():
+        if not ours or self._period_ms:
             return []
         answer = self._error_control(self._toggle | self._slave.state)
         self._toggle ^= 0x80
@@ -136,7 +138,7 @@ class ErrorControl:
         if self._life_until is not None and now >= self._life_until:
             self._life_until = None
             self.lost = True
-        period = self._producer_ms()
+        period = self._period_ms
         if not period or self._slave.state is NmtState.INITIALISING:
             self._heartbeat_at = None
             return []
@@ -148,18 +150,16 @@ class ErrorControl:
 
     def next_due(self, now: Ns) -> Ns | None:
         """Return when `tick` has something to do at the latest."""
-        heartbeat = (self._heartbeat_at or now) if self._producer_ms() else None
+        heartbeat = (self._heartbeat_at or now) if self._period_ms else None
         return min((due for due in (heartbeat, self._life_until) if due is not None), default=None)
 
     def _error_control(self, state: int) -> CanFrame:
         return CanFrame(ERROR_CONTROL_COB_ID + self._slave.node_id, bytes((state,)))
 
-    def _write_producer(self, _: Value) -> None:
+    def _write_producer(self, value: Value) -> None:
         """Start a new period with a heartbeat at once."""
+        self._period_ms = int(value)
         self._heartbeat_at = None
-
-    def _producer_ms(self) -> int:
-        return self._number(_PRODUCER)
 
     def _number(self, index: int) -> int:
         return self._values.number(index) if self._values.has(index) else 0

@@ -285,9 +285,14 @@ class Tpdo(_Pdo):
         self._syncs = 0
         return self._send(self.plan.pack(self._values), now)
 
+    @property
+    def on_event(self) -> bool:
+        """Whether an event or a timer sends it."""
+        return self.valid and self.transmission in ON_EVENT
+
     def tick(self, now: Ns) -> CanFrame | None:
         """Return the frame due by event (a mapped value changed) or timer, after the inhibit time."""
-        if not self.valid or self.transmission not in ON_EVENT or not self.plan.entries:
+        if not self.on_event or not self.plan.entries:
             return None
         data = self.plan.pack(self._values)
         timer = self._timer_due()
@@ -303,7 +308,7 @@ class Tpdo(_Pdo):
 
     def next_due(self) -> Ns | None:
         """Return when the event timer or the end of the inhibit time makes `tick` send at the latest."""
-        if not self.valid or self.transmission not in ON_EVENT or self._sent_at is None:
+        if not self.on_event or self._sent_at is None:
             return None
         timer = self._timer_due()
         if self.plan.pack(self._values) != self._sent_data:
@@ -330,11 +335,12 @@ class Tpdo(_Pdo):
 class PdoSet:
     """All PDOs of a node, in the order of their numbers; `changes` grows with every change of a parameter."""
 
-    __slots__ = ("_by_cob_id", "changes", "rpdos", "tpdos")
+    __slots__ = ("_by_cob_id", "_on_event", "changes", "rpdos", "tpdos")
 
     def __init__(self, values: ObjectValues) -> None:
         self.changes = 0
         self._by_cob_id: dict[int, list[Rpdo]] | None = None
+        self._on_event: tuple[Tpdo, ...] | None = None
         indices = sorted(values.description.names)
         changed = self._changed
         self.rpdos = tuple(Rpdo(values, index, changed) for index in indices if index in RPDO_COMMUNICATION)
@@ -354,6 +360,13 @@ class PdoSet:
                     self._by_cob_id.setdefault(rpdo.cob_id, []).append(rpdo)
         return self._by_cob_id.get(cob_id, [])
 
+    @property
+    def on_event(self) -> tuple[Tpdo, ...]:
+        """The valid TPDOs that an event or a timer sends."""
+        if self._on_event is None:
+            self._on_event = tuple(tpdo for tpdo in self.tpdos if tpdo.on_event)
+        return self._on_event
+
     def reload(self) -> None:
         """Take over the dictionary's values after a reset."""
         for pdo in (*self.rpdos, *self.tpdos):
@@ -370,3 +383,4 @@ class PdoSet:
     def _changed(self) -> None:
         self.changes += 1
         self._by_cob_id = None
+        self._on_event = None

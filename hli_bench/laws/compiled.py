@@ -14,7 +14,7 @@ _TEXT: Final = sha256(
 ).hexdigest()
 _STRAIGHT: Final[dict[tuple[Any, ...], Any]] = {}
 """Entries into the machine code by law and types: looking for the types of thirteen arrays takes milliseconds."""
-_OPTIONS: Final[Mapping[str, Any]] = {"fastmath": False, "error_model": "numpy"}
+_OPTIONS: Final[Mapping[str, Any]] = {"fastmath": False, "error_model": "numpy", "forceinline": True}
 
 
 def law(function: Law) -> Law:

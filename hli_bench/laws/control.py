@@ -59,6 +59,13 @@ def moved_within(one: Row, history: Rows, number: int, cycles: int, cycle: int) 
 def holds(one: Row, path: Row, row: Row, cycle: int) -> bool:
     """Return whether condition `row`, about axis `one`, holds in this cycle."""
     kind = row["kind"]
+    # first what is always watched
+    if kind == W_LAG_OVER:
+        return abs(one["lag"]) > row["limit"]
+    if kind == W_STANDSTILL_LAG_OVER:
+        return one["velocity"] == 0.0 and abs(one["lag"]) > row["limit"]
+    if kind == W_STATUSWORD:
+        return (one["statusword"] & row["mask"]) == row["value"]
     if kind == W_CYCLE:
         return cycle >= row["limit"]
     if kind == W_PATH_DONE:
@@ -67,16 +74,10 @@ def holds(one: Row, path: Row, row: Row, cycle: int) -> bool:
         return path["head"] >= row["limit"] or path["state"] == IDLE
     if kind == W_JOG_STOPPED:
         return one["velocity"] == 0.0 and one["jog_velocity"] == 0.0
-    if kind == W_LAG_OVER:
-        return abs(one["lag"]) > row["limit"]
-    if kind == W_STANDSTILL_LAG_OVER:
-        return one["velocity"] == 0.0 and abs(one["lag"]) > row["limit"]
     if kind == W_LAG_WITHIN:
         return abs(one["lag"]) <= row["limit"]
     if kind == W_PROBE_STATUS:
         return (one["probe_status"] & row["mask"]) == row["value"]
-    if kind == W_STATUSWORD:
-        return (one["statusword"] & row["mask"]) == row["value"]
     if kind == W_DIGITAL_INPUT:
         return (one["digital_inputs"] & row["mask"]) == row["value"]
     if kind == W_MOVED:

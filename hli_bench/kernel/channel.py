@@ -360,7 +360,7 @@ class Channel:
             self._latched[axis] = run.before_target.get(axis, False)
         self._measured |= {axis: mm(value.acs_tenth_um) for axis, value in run.values.items()}
         self._delivered.update(run.values.keys())
-        variables = self.variables()
+        assert self._decoder is not None
+        state = self._state()
         for axis, value in run.values.items():
-            pcs = variables[f"V.A.MEAS.PCS.VALUE.{self._core.axis(axis).name}"]
-            self.measured.append((value, pcs))
+            self.measured.append((value, self._decoder.measured_pcs(state, axis)))

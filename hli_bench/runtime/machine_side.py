@@ -101,6 +101,8 @@ class MachineSide:
         self._due = NOT_KNOWN
         """Next cycle in which a drive sends by time or a fault begins; what is quiet ends with it."""
         self._ticked = NOT_KNOWN
+        self._words = b""
+        """Control words of the last exchange: as long as they and the status words stay, nothing new becomes due."""
         self._slow_terminals = [one for one in terminals if one.period_ns > cycle_ns]
         self._forced = sorted(forced, key=lambda one: one.at_ns)
 
@@ -135,18 +137,24 @@ class MachineSide:
                 frames += drive.on_frame(frame, now)
         for drive in self.drives:
             frames += drive.tick(now)
-        self._due, self._ticked = NOT_KNOWN, cycle
+        self._due, self._ticked, self._words = NOT_KNOWN, cycle, b""
         return sorted(frames, key=lambda frame: frame.cob_id)
 
     def exchange(self, cycle: int, axis: Rows) -> None:
         """Pass the standard telegrams of a SYNC in which only control words changed, by numbers."""
-        self._due = NOT_KNOWN
         now = Ns(cycle * self.cycle_ns)
+        words = axis["controlword"].tobytes()
         exchange_in(axis, self.rows.servo)
+        same = words == self._words
+        self._words = words
         for drive, row in zip(self.drives, axis, strict=True):
-            row["statusword"] = drive.exchange(
+            status = drive.exchange(
                 int(row["controlword"]), int(row["target"]), int(row["probe_function"]), now
             )
+            same = same and status == row["statusword"]
+            row["statusword"] = status
+        if not same:
+            self._due = NOT_KNOWN
 
     def timers(self, cycle: int) -> list[CanFrame]:
         """Return what the drives send by time in a cycle without frames (heartbeats).

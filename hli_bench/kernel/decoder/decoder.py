@@ -62,6 +62,11 @@ class Decoder:
         except CncStop as stop:
             yield stop.error
 
+    def measured_pcs(self, state: MachineState, axis: AxisIndex) -> float:
+        """Return V.A.MEAS.PCS.VALUE of an axis that the machine has just measured, mm."""
+        self._context.measurements.learn(state)
+        return self._context.measurements.without_offsets(axis)
+
     def variables(self, state: MachineState) -> dict[str, float]:
         """Return the NC variables the program set or read, given the machine's state at its end.
 

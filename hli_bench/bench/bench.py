@@ -21,7 +21,7 @@ from hli_bench.manual.lists import Severity
 from hli_bench.plc import Task
 from hli_bench.plc import load as load_script
 from hli_bench.protocols.hli.access import Refusal
-from hli_bench.runtime.engine import Engine, LocalLink, Observer
+from hli_bench.runtime.engine import Engine, Observer
 from hli_bench.shells.pacing import RealPace, Stopwatch
 from hli_bench.shells.patience import patience
 from hli_bench.shells.processes import Deadline, PlcProcess, free_endpoint
@@ -260,7 +260,7 @@ class Bench:
         if can == "inproc" and not processes:
             side = build.machine_side(self.config)
             self.terminal_layouts = build.terminal_layouts(self.config)
-            return Engine(self.kernel, LocalLink(side), side.pending)
+            return Engine(self.kernel, side, side.pending)
         rows = self.kernel.rows.axis
         remote = self._closing.enter_context(
             RemoteMachine(self.config, machine, settings, can, rows, realtime=self._realtime)

@@ -15,7 +15,6 @@ from hli_bench.laws import stride as law
 from hli_bench.laws.compiled import straight
 from hli_bench.laws.rows import LOG_CYCLES, MachineRows, Rows
 from hli_bench.protocols.hli.access import Access, Refusal
-from hli_bench.runtime.machine_side import SYNC, MachineSide
 from hli_bench.wire.can import CanFrame
 from hli_bench.wire.hli import Commands
 from hli_bench.wire.signals import Edge
@@ -86,26 +85,6 @@ class Observer(Listener, Protocol):
 
     def commands(self, commands: Commands) -> None:
         """A PLC wrote."""
-
-
-class LocalLink:
-    """The machine in this process."""
-
-    def __init__(self, side: MachineSide) -> None:
-        self._side = side
-        self.rows = side.rows
-        self.sub_steps = side.sub_steps
-        self.power_on = side.power_on
-        self.advance = side.advance
-        self.telegrams = side.telegrams
-        self.quiet = side.quiet
-        self.exchange = side.exchange
-        self.timers = side.timers
-        self.take_edges = side.take_edges
-
-    def images(self, cycle: int) -> Mapping[str, bytes]:
-        """Return the process images by terminal."""
-        return {image.terminal: image.data for image in self._side.images(cycle)}
 
 
 NO_TICK: Final = 1 << 62
@@ -360,6 +339,3 @@ class Engine:
         if frames:
             for observer in self.observers:
                 observer.frames(cycle, frames)
-
-
-__all__ = ["SYNC", "Engine", "Link", "LocalLink", "Observer", "PlcPort"]

@@ -1,6 +1,6 @@
 """Plant, drives and terminals as one node group: what stands on the other end of the bus."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Protocol
 
@@ -104,6 +104,9 @@ class MachineSide:
         self._words = b""
         """Control words of the last exchange: as long as they and the status words stay, nothing new becomes due."""
         self._slow_terminals = [one for one in terminals if one.period_ns > cycle_ns]
+        self._channels = b""
+        """The channels' rows as of the last images: without a change there the images stay."""
+        self._images: Mapping[str, bytes] = {}
         self._forced = sorted(forced, key=lambda one: one.at_ns)
 
     def power_on(self) -> list[CanFrame]:
@@ -193,10 +196,15 @@ class MachineSide:
             level = -1 if fault.level is None else fault.level
             self.rows.signal[self.signals.index(fault.signal)]["forced"] = level
 
-    def images(self, cycle: int) -> list[ProcessImage]:
-        """Return the process images at the SYNC of `cycle`."""
-        now = Ns(cycle * self.cycle_ns)
-        return [terminal.step(now) for terminal in self.terminals]
+    def images(self, cycle: int) -> Mapping[str, bytes]:
+        """Return the process images at the SYNC of `cycle` by terminal."""
+        state = self.rows.channel.tobytes()
+        if state != self._channels or self._slow_terminals:
+            self._channels = state
+            now = Ns(cycle * self.cycle_ns)
+            images = [terminal.step(now) for terminal in self.terminals]
+            self._images = {image.terminal: image.data for image in images}
+        return self._images
 
     def take_edges(self) -> list[Edge]:
         """Return the edges of all signals since the last call, in order."""

@@ -159,7 +159,7 @@ class Drive:
         """Whether numbers may pass between rows without frames.
 
         True while the node is OPERATIONAL with the telegram for one of its probing inputs, follows its target
-        and takes touch probe functions as they come. `encode_cycle` then gives the frames that would have been sent.
+        and takes touch probe functions as they come.
         """
         changes = self.device.pdos.changes
         if changes != self._signature_changes:
@@ -172,10 +172,6 @@ class Drive:
         return (
             operational and self._signature_default and not self.holding and self._sources == _DEFAULT_SOURCES
         )
-
-    def encode_cycle(self, values: telegram.LoggedCycle) -> list[CanFrame]:
-        """Return the PDOs of a cycle of which only the numbers were kept."""
-        return telegram.pdo_frames(self.node_id, values)
 
     def exchange(self, controlword: int, target: int, probe_function: int, now: Ns) -> int:
         """Act at a SYNC as on the default RPDOs with these numbers, without frames; return the statusword."""

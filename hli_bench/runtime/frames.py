@@ -15,58 +15,49 @@ from hli_bench.base.ids import NodeId
 from hli_bench.laws.rows import LOG_CYCLES, Rows
 from hli_bench.protocols.canopen.nmt import NMT_COB_ID, NmtCommand, NmtState, node_state
 from hli_bench.protocols.canopen.sync import sync_frame
+from hli_bench.protocols.canopen.telegram import RPDOS, TPDOS, Number, Telegram
 from hli_bench.wire.can import CanFrame
 
-_Fields = tuple[tuple[str, int | None, str], ...]
-"""Name in the log, element of an array or None, little-endian dtype on the bus."""
-
-_ACTUAL: Final[tuple[tuple[int, _Fields], ...]] = (
-    (0x180, (("statusword", None, "<u2"), ("position", None, "<i4"))),
-    (0x280, (("probe_status", None, "<u2"), ("latch", 0, "<i4"))),
-    (0x380, (("torque_permille", None, "<i2"), ("following_error", None, "<i4"))),
-    (0x480, (("digital_inputs", None, "<u4"), ("latch", 1, "<i4"))),
-)
-_COMMAND: Final[tuple[tuple[int, _Fields], ...]] = (
-    (0x200, (("controlword", None, "<u2"), ("target", None, "<i4"))),
-    (0x300, (("probe_function", None, "<u2"),)),
-)
 _SDO_REQUESTS: Final = range(0x601, 0x680)
 _LSS_MASTER: Final = 0x7E5
 
 
 @dataclass(frozen=True, slots=True)
-class Telegram:
+class AxisTelegram:
     """One PDO that every cycle brings: `axis` is the column of the log that it is made from."""
 
     cob_id: int
     node: NodeId
     axis: int
-    fields: _Fields
+    numbers: Sequence[Number]
 
     def payload(self, rows: Rows) -> NDArray[np.uint8]:
         """Return its data bytes, shape (cycles, length), from log rows of shape (cycles, axes)."""
-        packed = np.empty(len(rows), [(f"f{at}", code) for at, (_, _, code) in enumerate(self.fields)])
+        packed = np.empty(len(rows), [(f"f{at}", f"<{one.code}") for at, one in enumerate(self.numbers)])
         column = rows[:, self.axis]
-        for at, (name, element, _) in enumerate(self.fields):
-            packed[f"f{at}"] = column[name] if element is None else column[name][:, element]
+        for at, one in enumerate(self.numbers):
+            field = column[one.name]
+            packed[f"f{at}"] = field if one.element is None else field[:, one.element]
         return packed.view(np.uint8).reshape(len(rows), packed.dtype.itemsize)
 
 
-def actual_telegrams(nodes: Sequence[NodeId]) -> tuple[Telegram, ...]:
+def actual_telegrams(nodes: Sequence[NodeId]) -> tuple[AxisTelegram, ...]:
     """Return the TPDOs of all drives in bus order; `nodes` in row order."""
-    return _in_bus_order(_ACTUAL, nodes)
+    return _in_bus_order(TPDOS, nodes)
 
 
-def command_telegrams(nodes: Sequence[NodeId]) -> tuple[Telegram, ...]:
+def command_telegrams(nodes: Sequence[NodeId]) -> tuple[AxisTelegram, ...]:
     """Return the RPDOs of all drives in bus order; `nodes` in row order."""
-    return _in_bus_order(_COMMAND, nodes)
+    return _in_bus_order(RPDOS, nodes)
 
 
-def _in_bus_order(kinds: Iterable[tuple[int, _Fields]], nodes: Sequence[NodeId]) -> tuple[Telegram, ...]:
-    telegrams = (
-        Telegram(base + node, node, axis, fields) for base, fields in kinds for axis, node in enumerate(nodes)
+def _in_bus_order(telegrams: Iterable[Telegram], nodes: Sequence[NodeId]) -> tuple[AxisTelegram, ...]:
+    of_axes = (
+        AxisTelegram(one.base + node, node, axis, one.numbers)
+        for one in telegrams
+        for axis, node in enumerate(nodes)
     )
-    return tuple(sorted(telegrams, key=lambda telegram: telegram.cob_id))
+    return tuple(sorted(of_axes, key=lambda telegram: telegram.cob_id))
 
 
 def from_cnc(frame: CanFrame) -> bool:
@@ -94,7 +85,7 @@ def cycle_frames(
     ]
 
 
-def _frame(telegram: Telegram, rows: Rows) -> CanFrame:
+def _frame(telegram: AxisTelegram, rows: Rows) -> CanFrame:
     return CanFrame(telegram.cob_id, telegram.payload(rows).tobytes())
 
 
@@ -137,7 +128,7 @@ class Cyclic:
 
     first: int
     rows: Rows
-    telegrams: tuple[Telegram, ...]
+    telegrams: tuple[AxisTelegram, ...]
     sync: bool
 
 
@@ -191,7 +182,7 @@ class BusOrder:
         yield Cyclic(cycle, row, self._command, sync=False)
         yield Beside(cycle, tuple(frame for frame in others if from_cnc(frame)))
 
-    def _sending(self) -> tuple[Telegram, ...]:
+    def _sending(self) -> tuple[AxisTelegram, ...]:
         silent = self._silent.now
         return tuple(telegram for telegram in self._actual if telegram.node not in silent)
 

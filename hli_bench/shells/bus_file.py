@@ -15,7 +15,7 @@ from hli_bench.base.ids import NodeId
 from hli_bench.base.time import DC_EPOCH, NS_PER_S
 from hli_bench.laws.rows import Rows
 from hli_bench.protocols.canopen.sync import sync_frame
-from hli_bench.runtime.frames import BusOrder, Cyclic, Telegram
+from hli_bench.runtime.frames import AxisTelegram, BusOrder, Cyclic
 from hli_bench.wire.can import CanFrame
 
 UNIX_OF_DC_NS: Final = int(DC_EPOCH.timestamp()) * NS_PER_S
@@ -62,7 +62,7 @@ class BusFile:
         self._order = BusOrder(nodes)
         self._cycle_ns = cycle_ns
         self._epoch_ns = dc_epoch_ns + UNIX_OF_DC_NS
-        self._templates: dict[tuple[bool, tuple[Telegram, ...]], _Template] = {}
+        self._templates: dict[tuple[bool, tuple[AxisTelegram, ...]], _Template] = {}
         file.write(form.head)
 
     def write(self, first: int, rows: Rows, others: Mapping[int, Sequence[CanFrame]]) -> None:

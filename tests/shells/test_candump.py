@@ -10,8 +10,8 @@ import pytest
 
 from hli_bench.bench.bench import Bench
 from hli_bench.laws.rows import LOG_CYCLES
-from hli_bench.runtime.engine import SYNC
 from hli_bench.runtime.frames import cycle_frames
+from hli_bench.runtime.machine_side import SYNC
 from hli_bench.shells.candump import CandumpLog, line
 from hli_bench.wire.can import CanFrame
 

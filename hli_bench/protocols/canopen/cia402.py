@@ -6,11 +6,6 @@ from typing import Final
 PRODUCER_HEARTBEAT: Final = (0x1017, 0)
 MODE_OF_OPERATION: Final = (0x6060, 0)
 CYCLIC_SYNCHRONOUS_POSITION: Final = 8
-PROBE_STATUS: Final = 0x60B90010
-"""Mapping entries: index, sub-index, bits."""
-DIGITAL_INPUTS: Final = 0x60FD0020
-LATCHES_2: Final = (0x60BC0020, 0x60BD0020)
-"""Latched positions of the second probing input, positive and negative edge."""
 
 
 class Command(IntEnum):

@@ -14,6 +14,7 @@ from hli_bench.base.errors import InputError
 from hli_bench.base.time import Ns
 from hli_bench.laws.rows import LOG, SERVO
 from hli_bench.laws.servo import supervise
+from hli_bench.protocols.canopen import telegram
 from hli_bench.protocols.canopen.aborts import AbortCode
 from hli_bench.wire.can import CanFrame
 
@@ -411,10 +412,9 @@ class TestRowToRow:
             row["latch"][:2] = logged["latch"]
             row["following_error"] = logged["following_error"]
             logged["statusword"] = enabled.statusword
-            frames = enabled.encode_cycle(logged)
-            assert frames[:4] == bus.cycle()
+            assert telegram.frames(telegram.TPDOS, NODE_ID, logged) == bus.cycle()
             logged["controlword"] = 0x0F
-            for frame in enabled.encode_cycle(logged)[4:]:
+            for frame in telegram.frames(telegram.RPDOS, NODE_ID, logged):
                 bus.send_message(frame.cob_id, frame.data)
             bus.cycle()
             assert row["target"] == logged["target"]

@@ -6,12 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drives.cia402 import telegram
 from hli_bench.base.ids import NodeId
 from hli_bench.bench.bench import Bench
 from hli_bench.laws.rows import LOG, LOG_CYCLES
+from hli_bench.protocols.canopen import telegram
 from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame
-from hli_bench.runtime.engine import SYNC
 from hli_bench.runtime.frames import (
     CycleBuffer,
     SilentNodes,
@@ -19,6 +18,7 @@ from hli_bench.runtime.frames import (
     cycle_frames,
     from_cnc,
 )
+from hli_bench.runtime.machine_side import SYNC
 from hli_bench.wire.can import CanFrame
 
 NODES = [NodeId(5), NodeId(2), NodeId(9)]
@@ -116,7 +116,11 @@ def test_the_log_gives_the_very_frames_that_passed_from_boot_up_to_a_latch() -> 
 @pytest.mark.parametrize("cycle", range(3))
 def test_frames_are_those_of_the_default_telegram_of_the_drives(cycle: int) -> None:
     row = random_rows(3)[cycle]
-    expected = [frame for axis, node in enumerate(NODES) for frame in telegram.pdo_frames(node, row[axis])]
+    expected = [
+        frame
+        for axis, node in enumerate(NODES)
+        for frame in telegram.frames((*telegram.TPDOS, *telegram.RPDOS), node, row[axis])
+    ]
     made = cycle_frames(NODES, row)
     assert made[0] == SYNC
     assert sorted(made[1:], key=lambda frame: frame.cob_id) == sorted(

@@ -1,0 +1,86 @@
+"""The standard telegram of a CiA 402 drive: which numbers travel cyclically in which PDO, for CNC, drives, recordings.
+
+RPDO1 controlword, target position; RPDO2 touch probe function. TPDO1 statusword, actual position; TPDO2 touch probe
+status, latched position of the first edge; TPDO3 torque, following error; TPDO4 digital inputs, latched position of
+the second edge. Source: measurement manual 6.4 for what measuring needs.
+"""
+
+from collections.abc import Iterable, Sequence
+from struct import Struct
+from typing import Any, Final, NamedTuple
+
+from hli_bench.wire.can import CanFrame
+
+BITS: Final = {"H": 16, "h": 16, "i": 32, "I": 32}
+_LATCHES: Final = (0x60BA, 0x60BB, 0x60BC, 0x60BD)
+"""Touch probe 1 positive and negative edge, touch probe 2 positive and negative edge."""
+
+
+class Number(NamedTuple):
+    """One number: its name in rows of the laws (`element` of an array there), `struct` code, object (sub-index 0)."""
+
+    name: str
+    code: str
+    object_index: int
+    element: int | None = None
+
+    @property
+    def entry(self) -> int:
+        """The mapping entry: index, sub-index, bits."""
+        return self.object_index << 16 | BITS[self.code]
+
+
+class Telegram(NamedTuple):
+    """One PDO: COB-ID of node 0 and its numbers in order."""
+
+    base: int
+    numbers: tuple[Number, ...]
+
+    @property
+    def mapping(self) -> tuple[int, ...]:
+        """The entries of 0x1600 or 0x1A00 and those behind."""
+        return tuple(number.entry for number in self.numbers)
+
+    @property
+    def layout(self) -> Struct:
+        """How its data bytes are packed."""
+        return Struct("<" + "".join(number.code for number in self.numbers))
+
+    def frame(self, node: int, row: Any) -> CanFrame:
+        """Return the frame of a node with the numbers of a row."""
+        values = (
+            int(row[number.name] if number.element is None else row[number.name][number.element])
+            for number in self.numbers
+        )
+        return CanFrame(self.base + node, self.layout.pack(*values))
+
+
+RPDOS: Final = (
+    Telegram(0x200, (Number("controlword", "H", 0x6040), Number("target", "i", 0x607A))),
+    Telegram(0x300, (Number("probe_function", "H", 0x60B8),)),
+)
+
+
+def tpdos(probing_input: int = 0) -> tuple[Telegram, ...]:
+    """Return the TPDOs that carry the latches of a probing input (0 or 1); 0 is the default map."""
+    positive, negative = _LATCHES[2 * probing_input : 2 * probing_input + 2]
+    return (
+        Telegram(0x180, (Number("statusword", "H", 0x6041), Number("position", "i", 0x6064))),
+        Telegram(0x280, (Number("probe_status", "H", 0x60B9), Number("latch", "i", positive, 0))),
+        Telegram(0x380, (Number("torque_permille", "h", 0x6077), Number("following_error", "i", 0x60F4))),
+        Telegram(0x480, (Number("digital_inputs", "I", 0x60FD), Number("latch", "i", negative, 1))),
+    )
+
+
+TPDOS: Final = tpdos()
+
+
+def frames(telegrams: Iterable[Telegram], node: int, row: Any) -> list[CanFrame]:
+    """Return the frames of a node with the numbers of a row, in the order of the telegrams."""
+    return [telegram.frame(node, row) for telegram in telegrams]
+
+
+def changed(probing_input: int) -> Sequence[tuple[int, Telegram]]:
+    """Return place and telegram of the TPDOs that are not the default ones for a probing input."""
+    pairs = zip(TPDOS, tpdos(probing_input), strict=True)
+    return [(place, other) for place, (default, other) in enumerate(pairs) if other != default]

@@ -130,7 +130,9 @@ class Watches:
         return any(map(self._fired.item, handles))
 
     def forget(self, handle: int) -> None:
-        """Take a condition back."""
+        """Take a condition back; one that has been taken back already stays so."""
+        if self._kind[handle] in (law.W_FREE, law.W_NONE):
+            return
         self._fired[handle] = 0
         self._kind[handle] = law.W_FREE
         heappush(self._gaps, handle)

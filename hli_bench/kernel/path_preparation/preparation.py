@@ -88,9 +88,7 @@ class Preparation:
         millimetres = {axis: position / TENTH_UM_PER_MM for axis, position in target.items()}
         return self._put(millimetres, velocity, self._feed, rapid=False)
 
-    def _put(
-        self, target: Mapping[AxisIndex, float], feed: float, dynamics: Rows, *, rapid: bool
-    ) -> int | None:
+    def _put(self, target: Mapping[AxisIndex, float], feed: float, may: Rows, *, rapid: bool) -> int | None:
         """Put a straight way; `feed` in 0.1 um/s."""
         rows = self._rows
         self._target.fill(math.nan)
@@ -101,7 +99,7 @@ class Preparation:
             rows.path,
             rows.segment,
             rows.plan,
-            dynamics,
+            may,
             self._target,
             feed,
             rapid,

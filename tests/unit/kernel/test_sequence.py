@@ -141,3 +141,16 @@ def test_no_row_left_is_said_by_name(rows, watches):
 
     with pytest.raises(BenchError, match="more than 64 conditions"):
         watches.watch(path_done())
+
+
+def test_a_condition_taken_back_twice_frees_one_row(rows, watches):
+    first, second, third = (watches.watch(cycle_reached(n)) for n in (1, 2, 3))
+    for handle in (first, first, third, third):
+        watches.forget(handle)
+    assert armed(rows) == 2, "the gap in front of the second, and the second"
+    handles = [watches.watch(path_done()) for _ in range(4)]
+    assert len({second, *handles}) == 5
+    for handle in (second, *handles):
+        watches.forget(handle)
+    assert armed(rows) == 0
+    assert watches.watch(path_done()) == first

@@ -71,7 +71,7 @@ def test_drive_objects_change_at_the_right_blocks(make, recorder):
 def test_values_are_accepted_by_the_dictionary_of_the_drive(make):
     bench = make(AT_STOP)
     bench.run(PROGRAM)
-    (drive,) = [one for one in bench.engine.link._side.drives if one.node_id == NODE_Z]
+    (drive,) = [one for one in bench.engine.link.drives if one.node_id == NODE_Z]
 
     assert drive.device.values.number(0x6065, 0) == 1_048_575
     assert drive.device.values.number(0x6072, 0) == 50_000

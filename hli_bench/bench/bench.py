@@ -70,6 +70,10 @@ class Bench:
     ) -> None:
         if realtime and pace != "real":
             raise InputError(f"realtime is for a bench by the clock (pace real), not for pace {pace}")
+        if pace not in ("free", "real"):
+            raise InputError(f"pace {pace!r}: expected free or real")
+        if isinstance(plc, str | Path):
+            raise InputError(f"plc {str(plc)!r}: expected a list of scripts")
         self.config: MachineConfig = load(machine, settings or {})
         for note in self.config.notes:
             if note.severity is Severity.WARNING:

@@ -52,6 +52,8 @@ class HliDoor:
         self._written: list[tuple[int, WriteRequest]] = []
         self._resets: list[tuple[int, Reset]] = []
         self._settle_until = 0
+        self._told: set[tuple[str, str]] = set()
+        """PLCs and elements of whose refused writes people know."""
         self.programs: list[RunProgram] = []
         """Programs that clients want to run; the bench takes them when it is idle."""
 
@@ -98,8 +100,13 @@ class HliDoor:
                 self._server.put_error({name: getattr(error, name) for name in error.__slots__})
 
     def refused(self, refusals: Iterable[Refusal]) -> None:
-        """Report writes that were refused."""
+        """Report writes that were refused; people are told once for each PLC and element."""
+        refusals = list(refusals)
         self._server.report(refusals)
+        for refusal in refusals:
+            if (refusal.writer, refusal.path) not in self._told:
+                self._told.add((refusal.writer, refusal.path))
+                self._on_note(f"plc {refusal.writer}: {refusal.path}: {refusal.reason}")
 
     def state_changed(self) -> None:
         """Put mode and state of the CNC."""

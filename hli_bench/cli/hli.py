@@ -36,7 +36,7 @@ def add(commands: Commands) -> None:
     put.set_defaults(execute=set_value)
     watch = actions.add_parser("watch", help="print a value now and whenever it changes, until Ctrl-C")
     watch.add_argument("path", metavar="PATH", help=PATH)
-    watch.set_defaults(execute=watch_value, stays=True)
+    watch.set_defaults(execute=watch_value)
     for action in (ls, get, put, watch):
         add_connect(action)
 

@@ -44,7 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     arguments = parser().parse_args(argv)
-    _take_signals(terminate=getattr(arguments, "stays", False))
+    _take_signals()
     try:
         status: int = arguments.execute(arguments)
         sys.stdout.flush()
@@ -60,14 +60,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     return status
 
 
-def _take_signals(*, terminate: bool) -> None:
-    """Let SIGINT interrupt the command, and SIGTERM one that stays until it is told to end.
+def _take_signals() -> None:
+    """Let SIGINT and SIGTERM interrupt the command as Ctrl-C does, so that what it began is ended and written.
 
     Said explicitly, because a shell without job control starts a command with `&` so that it ignores SIGINT.
     """
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    if terminate:
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ def add(commands: Commands) -> None:
     parser.add_argument("script", metavar="SCRIPT", help="a file, or the name of a supplied script")
     parser.add_argument("--name", default="", help="name of the PLC (default: that of the file)")
     add_connect(parser)
-    parser.set_defaults(execute=execute, stays=True)
+    parser.set_defaults(execute=execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -15,7 +15,7 @@ def add(commands: Commands) -> None:
         "`run --connect` runs programs on it.",
     )
     add_bench(parser, pace="real", zenoh=DEFAULT_ENDPOINT)
-    parser.set_defaults(execute=execute, stays=True)
+    parser.set_defaults(execute=execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -1,7 +1,8 @@
-"""The loop that steps the bench: quiet cycles in one call, the others one by one through frames.
+"""The loop that steps the bench: quiet cycles in one call, the others one by one.
 
-A cycle in which only the standard telegrams pass needs no frames: the compiled stride exchanges their numbers.
-Every other cycle hands real frames to the drives and takes real frames from them. Both give the same bits.
+A cycle in which only the standard telegrams pass needs no frames: the compiled stride exchanges their numbers, and
+one in which control words change passes numbers too. Every other cycle hands real frames to the drives and takes real
+frames from them. All give the same bits.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -99,18 +99,21 @@ class Pipe:
 
     def receive(self) -> bytes:
         """Wait for one message. Raises EOFError when the other side has gone, TimeoutError when it is stuck."""
+        return self._read(_LENGTH.unpack(self._read(_LENGTH.size))[0])
+
+    def _read(self, size: int) -> bytes:
         try:
-            head = self._file.read(_LENGTH.size)
+            data = self._file.read(size)
         except ConnectionError:
-            head = b""
+            data = b""
         except TimeoutError:
             raise
         except OSError as error:
             # The file object says so of every reading after one that took too long.
             raise TimeoutError from error
-        if len(head) < _LENGTH.size:
+        if len(data) < size:
             raise EOFError
-        return self._file.read(_LENGTH.unpack(head)[0])
+        return data
 
     def close(self) -> None:
         """Close this end."""

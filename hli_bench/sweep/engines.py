@@ -69,11 +69,9 @@ class LocalProcesses:
                     try:
                         done: Chunk = pipe.recv()
                     except (EOFError, ConnectionError) as error:
-                        raise EnvironmentLacks(
-                            "a worker process has died (out of memory?); the same command goes on from here"
-                        ) from error
-                    waiting[pipe] += _hand_out(pipe, chunks) - 1
+                        raise _died() from error
                     yield done
+                    waiting[pipe] += _hand_out(pipe, chunks) - 1
 
 
 class _Worker:
@@ -100,12 +98,19 @@ class _Worker:
 
 
 def _hand_out(pipe: _Pipe, chunks: Iterator[Sequence[Run]]) -> int:
-    """Give the next chunk to a worker; return how many it got."""
+    """Give the next chunk to a worker; return how many it got. Raises EnvironmentLacks when it has died."""
     chunk = next(chunks, None)
     if chunk is None:
         return 0
-    pipe.send(chunk)
+    try:
+        pipe.send(chunk)
+    except ConnectionError as error:
+        raise _died() from error
     return 1
+
+
+def _died() -> EnvironmentLacks:
+    return EnvironmentLacks("a worker process has died (out of memory?); the same command goes on from here")
 
 
 def _serve(pipe: _Pipe, job: Job, work: Work) -> None:

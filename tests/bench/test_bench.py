@@ -24,6 +24,18 @@ def test_a_limit_of_machine_time_aborts_a_program() -> None:
         assert bench.run("%b\nN10 G01 X0 F600\nM30\n").completed
 
 
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"pace": "slow"}, "pace 'slow': expected free or real"),
+        ({"plc": "demo.py"}, r"plc 'demo\.py': expected a list of scripts"),
+    ],
+)
+def test_arguments_that_make_no_bench(options, message) -> None:
+    with pytest.raises(InputError, match=message):
+        Bench("demo", **options)
+
+
 def test_a_bench_whose_plc_cannot_be_loaded_stays_refused(tmp_path) -> None:
     with Bench("demo", plc=[tmp_path / "none.py"]) as bench:
         with pytest.raises(InputError, match=r"none\.py"):

@@ -142,6 +142,10 @@ def test_the_second_plc_on_a_unit_is_refused_and_reported(serve: Any, probe: Pat
     assert last["writer"] == "second"
     assert "'demo'" in last["reason"]
     assert second.process.poll() is None
+    bench.command.interrupt()
+    assert bench.command.end() == 0
+    told = [line for line in bench.command.err if line.startswith(f"plc second: {UNIT}/command_w: ")]
+    assert len(told) == 1, bench.command.err
 
 
 def test_a_second_plc_of_the_same_name_is_turned_away(serve: Any, start: Any) -> None:

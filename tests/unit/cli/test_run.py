@@ -95,7 +95,8 @@ def test_a_limit_is_seconds_above_0(capsys: pytest.CaptureFixture[str], given: s
     assert f"{given!r}: expected seconds above 0" in capsys.readouterr().err
 
 
-def test_ctrl_c_aborts_and_still_writes_the_result(tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_aborts_and_still_writes_the_result(tmp_path: Path, number: int) -> None:
     program, file = tmp_path / "slow.nc", tmp_path / "r.json"
     program.write_text('N10 #MSG SYN["started"]\nN20 G90 G01 Z290 F1\nN30 M30\n', encoding="utf-8")
     running = subprocess.Popen(
@@ -108,7 +109,7 @@ def test_ctrl_c_aborts_and_still_writes_the_result(tmp_path: Path) -> None:
     )
     assert running.stdout is not None
     assert running.stdout.readline() == "started\n"
-    running.send_signal(signal.SIGINT)
+    running.send_signal(number)
     out, said = running.communicate(timeout=30)
     assert (running.returncode, out) == (130, "")
     assert "aborted" in said

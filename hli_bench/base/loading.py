@@ -33,6 +33,14 @@ def module(name: str) -> ModuleType:
         raise
 
 
+def installed(name: str) -> Path:
+    """Return the file of an installed package without importing it."""
+    spec = importlib.util.find_spec(name)
+    if spec is None or spec.origin is None:
+        raise ModuleNotFoundError(f"{name} is not installed")
+    return Path(spec.origin)
+
+
 def script(path: Path) -> ModuleType:
     """Load a user's Python file as a module of its own. Raises InputError when it cannot be read.
 

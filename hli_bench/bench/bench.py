@@ -17,13 +17,13 @@ from hli_bench.bench.remote import RemoteEngine, RemoteMachine
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.bench.standstill import Standstill
 from hli_bench.kernel.records import Emitted
+from hli_bench.laws import native
 from hli_bench.manual.lists import Severity
 from hli_bench.plc import Task
 from hli_bench.plc import load as load_script
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, Observer
 from hli_bench.shells.pacing import RealPace, Stopwatch
-from hli_bench.shells.patience import patience
 from hli_bench.shells.processes import Deadline, PlcProcess, free_endpoint
 from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 from hli_bench.shells.zenoh_server import HliServer
@@ -32,7 +32,7 @@ START_UP_CYCLES: Final = 2000
 """Cycles within which all drives must have come into operation."""
 FOREVER: Final = 1 << 62
 COMPILING: Final = (
-    "compiling the laws of motion; once for each number of axes, until the laws or Python change"
+    "compiling the laws of motion: some seconds, once until the laws, numba or the processor change"
 )
 IDLE_S: Final = 0.2
 """Longest wait for a client while time stands still."""
@@ -79,6 +79,7 @@ class Bench:
             if note.severity is Severity.WARNING:
                 on_note(f"warning: {note}")
         self._on_note = on_note
+        native.prepare(lambda: on_note(COMPILING))
         with ExitStack() as stack:
             self._closing = stack
             self._realtime = realtime
@@ -118,8 +119,6 @@ class Bench:
             return
         if self.engine.cycle:
             raise BenchError("this bench has failed to start; make a new one")
-        with patience(self._on_note, COMPILING):
-            self.engine.compile()
         self.engine.power_on()
         if not self._advance(lambda: self.kernel.ready, START_UP_CYCLES):
             raise BenchError(f"not all drives came into operation within {START_UP_CYCLES} cycles")
@@ -262,7 +261,7 @@ class Bench:
         self, machine: str | Path, settings: Mapping[str, object], can: str, *, processes: bool
     ) -> Engine:
         if can == "inproc" and not processes:
-            side = build.machine_side(self.config)
+            side = build.machine_side(self.config, self.kernel.rows.axis)
             self.terminal_layouts = build.terminal_layouts(self.config)
             return Engine(self.kernel, side, side.pending)
         rows = self.kernel.rows.axis

@@ -6,6 +6,7 @@ from hli_bench.base.loading import module
 from hli_bench.bench.config import MachineConfig
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.setup import AxisSetup, KernelSetup
+from hli_bench.laws.rows import Rows
 from hli_bench.plant import build as plant
 from hli_bench.runtime.machine_side import DriveNode, Forced, MachineSide
 from hli_bench.terminals.terminal import Terminal, type_of
@@ -32,8 +33,8 @@ def kernel(config: MachineConfig) -> Kernel:
     )
 
 
-def machine_side(config: MachineConfig) -> MachineSide:
-    """Return the drives, the plant and the terminals of a machine, all in one process."""
+def machine_side(config: MachineConfig, axis_rows: Rows) -> MachineSide:
+    """Return drives, plant and terminals of a machine, all in one process; `axis_rows` hold the telegrams."""
     built = plant.build(config.plant, config.channels())
     drives: list[DriveNode] = []
     # Any: a drive model is a module of the user's choice
@@ -42,6 +43,7 @@ def machine_side(config: MachineConfig) -> MachineSide:
         drives.append(model.create(axis.name, axis.node_id, built.rows.servo[axis.index], {}))
     return MachineSide(
         rows=built.rows,
+        axis=axis_rows,
         pending=built.pending,
         drives=drives,
         terminals=terminals(config, built.rows.channel),

@@ -15,7 +15,8 @@ from hli_bench.base.errors import EnvironmentLacks
 from hli_bench.bench import build, telegraph
 from hli_bench.bench.config import load
 from hli_bench.bench.telegraph import Numbers, Order
-from hli_bench.laws.rows import AXIS
+from hli_bench.laws.native import bind
+from hli_bench.laws.rows import AXIS, Rows
 from hli_bench.laws.stride import exchange_in, exchange_out
 from hli_bench.runtime.machine_side import SYNC, MachineSide
 from hli_bench.shells.can_bus import CanBus
@@ -27,13 +28,13 @@ from hli_bench.wire.can import CanFrame
 class Drives:
     """Serves the kernel's process."""
 
-    def __init__(self, side: MachineSide, pipe: Pipe, bus: CanBus | None) -> None:
+    def __init__(self, side: MachineSide, axis: Rows, pipe: Pipe, bus: CanBus | None) -> None:
         self._side = side
         self._pipe = pipe
         self._bus = bus
-        self._axis = np.zeros(len(side.rows.servo), AXIS)
-        """What the telegrams say, as numbers; the other fields are the kernel's and mean nothing here."""
-        self._numbers = Numbers(self._axis)
+        self._numbers = Numbers(axis)
+        self._exchange_in = bind(exchange_in, axis, side.rows.servo)
+        self._exchange_out = bind(exchange_out, axis, side.rows.servo)
         self._moved = 0
         """The cycle to whose SYNC the machine has moved."""
         self._raised = False
@@ -79,10 +80,10 @@ class Drives:
             return False
         self._numbers.take_command(body)
         if kind is Order.WORDS:
-            self._side.exchange(cycle, self._axis)
+            self._side.exchange(cycle)
         else:
-            exchange_in(self._axis, self._side.rows.servo)
-            exchange_out(self._axis, self._side.rows.servo)
+            self._exchange_in()
+            self._exchange_out()
         return True
 
     def _from_bus(self) -> list[CanFrame]:
@@ -113,12 +114,15 @@ class Drives:
 def main(pipe: Pipe, arguments: Sequence[str]) -> None:
     """Build the machine side and serve."""
     machine, settings, can, realtime = arguments
-    side = build.machine_side(load(machine, json.loads(settings)))
+    config = load(machine, json.loads(settings))
+    # What the telegrams say, as numbers; the other fields are the kernel's and mean nothing here.
+    axis = np.zeros(len(config.axes), AXIS)
+    side = build.machine_side(config, axis)
     bus = CanBus(can) if can else None
     ask(realtime=bool(realtime))
     settle()
     try:
-        Drives(side, pipe, bus).run()
+        Drives(side, axis, pipe, bus).run()
     finally:
         if bus is not None:
             bus.close()

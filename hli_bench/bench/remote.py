@@ -145,7 +145,7 @@ class RemoteMachine:
         answer = self._drives.ask(telegraph.order(Order.CYCLE, cycle, body))
         return self._frames(telegraph.read_reply(answer), cycle)
 
-    def exchange(self, cycle: int, axis: Rows) -> None:
+    def exchange(self, cycle: int) -> None:
         """Pass the telegrams of a SYNC in which only control words changed, by numbers."""
         self.numbers(Order.WORDS, cycle)
 

@@ -11,6 +11,7 @@ from hli_bench.base.time import Ns
 from hli_bench.bench import build, telegraph
 from hli_bench.bench.config import load
 from hli_bench.laws.channels import advance_channels
+from hli_bench.laws.native import bind
 from hli_bench.laws.rows import MachineRows
 from hli_bench.plant import build as plant
 from hli_bench.shells.processes import Pipe, work
@@ -24,6 +25,7 @@ def main(pipe: Pipe, arguments: Sequence[str]) -> None:
     rows: MachineRows = built.rows
     terminals = build.terminals(config, rows.channel)
     names = built.signals.names
+    advance = bind(advance_channels, rows.channel, rows.edge, config.dc_epoch_ns)
     while True:
         try:
             _, cycle, body = telegraph.read_order(pipe.receive())
@@ -35,7 +37,7 @@ def main(pipe: Pipe, arguments: Sequence[str]) -> None:
             rows.edge[number]["at_ns"] = edge.at_ns
             rows.edge[number]["level"] = edge.level
         now = Ns(cycle * config.cycle_ns)
-        advance_channels(rows.channel, rows.edge, len(edges), now, config.dc_epoch_ns)
+        advance(len(edges), now)
         pipe.send(telegraph.parts(*(terminal.step(now).data for terminal in terminals)))
 
 

@@ -18,7 +18,7 @@ from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.records import Emitted
 from hli_bench.kernel.sequence import END, Sequence
 from hli_bench.kernel.setup import KernelSetup
-from hli_bench.laws.compiled import straight
+from hli_bench.laws.native import bind
 from hli_bench.laws.publish import publish_positions
 from hli_bench.laws.rows import FOLLOW, KernelRows
 from hli_bench.manual.errors import hli as hli_errors
@@ -48,11 +48,11 @@ class Kernel:
         self._monitoring = Monitoring(self.core)
         self.channel = Channel(self.core, self._objects, self._monitoring)
         self._starting: dict[AxisIndex, Sequence[start_up.Drive]] = {}
-        self._image_bytes = np.frombuffer(self.image.data, np.uint8)
         layout = self.image.layout
         areas = [f"ax/{axis.number}/lr_state" for axis in setup.axes]
-        self._positions = np.array([layout.element(f"{area}/active_position_r").offset for area in areas])
-        self._publish = publish_positions
+        offsets = np.array([layout.element(f"{area}/active_position_r").offset for area in areas])
+        image = np.frombuffer(self.image.data, np.uint8)
+        self._publish = bind(publish_positions, self.core.rows.axis, image, offsets)
         self._show_heads()
 
     @property
@@ -69,10 +69,6 @@ class Kernel:
     def telegram_ids(self) -> frozenset[int]:
         """COB-IDs of the telegrams that every cycle brings."""
         return self._telegrams.cob_ids
-
-    def compile(self) -> None:
-        """Have the laws that are called from here compiled where they are not yet."""
-        self._publish = straight(publish_positions, self.core.rows.axis, self._image_bytes, self._positions)
 
     def begin_start_up(self) -> None:
         """Begin to bring all drives into operation."""
@@ -164,7 +160,7 @@ class Kernel:
 
     def publish(self) -> None:
         """Bring the positions on the HLI up to date; called before somebody looks."""
-        self._publish(self.core.rows.axis, self._image_bytes, self._positions)
+        self._publish()
 
     def position_mm(self, axis: AxisIndex) -> float:
         """Return the actual position of an axis in mm (degrees)."""

@@ -12,8 +12,8 @@ def holding(core: Core) -> list[str]:
     moves = [bool(row["mode"] == JOG and row["jog_velocity"]) for row in axes]
     found = []
     if not core.path.idle:
-        segment = core.rows.segment[core.path.segment % SEGMENTS]
-        moves = [one or bool(of_path) for one, of_path in zip(moves, segment["moves"], strict=True)]
+        leg = core.rows.leg[core.path.segment % SEGMENTS]
+        moves = [one or bool(of_path) for one, of_path in zip(moves, leg["moves"], strict=True)]
         if path["hold"]:
             found.append(f"{_CHANNEL}/feedhold is TRUE")
         if not path["override"]:

@@ -50,9 +50,9 @@ def channel_image(row: Row, now_ns: int, dc_epoch_ns: int) -> None:
 
 
 @law
-def advance_channels(channel: Rows, edge: Rows, edges: int, now_ns: int, dc_epoch_ns: int) -> None:
-    """Take the edges of one cycle, in order, and refresh what the images show at `now_ns`."""
-    for e in range(edges):
+def advance_channels(channel: Rows, edge: Rows, dc_epoch_ns: int, count: int, now_ns: int) -> None:
+    """Take the `count` edges of one cycle, in order, and refresh what the images show at `now_ns`."""
+    for e in range(count):
         for c in range(channel.shape[0]):
             if channel[c]["signal"] == edge[e]["signal"]:
                 channel_edge(channel[c], edge[e]["level"], edge[e]["at_ns"], dc_epoch_ns)

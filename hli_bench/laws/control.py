@@ -131,18 +131,18 @@ def sense(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) -> int
 
 
 @law
-def path_held(axis: Rows, path: Row, one: Row) -> bool:
+def path_held(axis: Rows, path: Row, leg: Rows, slot: int) -> bool:
     """Tell whether the path must stand: feedhold of the channel, or an axis it moves is not released."""
     if path["hold"]:
         return True
     for number in range(axis.shape[0]):
-        if one["moves"][number] and axis[number]["released"] == 0:
+        if leg[slot, number]["moves"] and axis[number]["released"] == 0:
             return True
     return False
 
 
 @law
-def walk_path(axis: Rows, row: Row, segment: Rows, time: float) -> None:
+def walk_path(axis: Rows, row: Row, segment: Rows, leg: Rows, time: float) -> None:
     """Advance along the prepared segments by `time` seconds."""
     while time > 0.0 and row["state"] != IDLE:
         one = segment[row["head"] % SEGMENTS]
@@ -157,7 +157,7 @@ def walk_path(axis: Rows, row: Row, segment: Rows, time: float) -> None:
             low = row["brake"][0]
             high = row["brake"][1]
             split = row["brake_split"]
-        elif path_held(axis, row, one):
+        elif path_held(axis, row, leg, row["head"] % SEGMENTS):
             wanted = 0.0
             low = one["hold"][0]
             high = one["hold"][1]
@@ -191,23 +191,24 @@ def walk_path(axis: Rows, row: Row, segment: Rows, time: float) -> None:
 
 
 @law
-def act(axis: Rows, path: Rows, segment: Rows, cycle_ns: int) -> None:
+def act(axis: Rows, path: Rows, segment: Rows, leg: Rows, cycle_ns: int) -> None:
     """Interpolate one cycle: new set points and the targets of the command telegrams."""
     time = cycle_ns * 1e-9
     running = path[0]["state"] != IDLE
     if running:
-        walk_path(axis, path[0], segment, time)
-    one = segment[path[0]["head"] % SEGMENTS]
+        walk_path(axis, path[0], segment, leg, time)
+    slot = path[0]["head"] % SEGMENTS
     for number in range(axis.shape[0]):
         row = axis[number]
         row["past"] = row["command"]
         before = row["command"]
         mode = row["mode"]
-        if mode == PATH and running and one["moves"][number]:
-            if path[0]["s"] >= one["length"]:
-                row["command"] = one["end"][number]
+        if mode == PATH and running and leg[slot, number]["moves"]:
+            way = leg[slot, number]
+            if path[0]["s"] >= segment[slot]["length"]:
+                row["command"] = way["end"]
             else:
-                row["command"] = one["start"][number] + one["direction"][number] * path[0]["s"]
+                row["command"] = way["start"] + way["direction"] * path[0]["s"]
             row["velocity"] = (row["command"] - before) / time
         elif mode == JOG:
             wanted = row["jog_velocity"] if row["released"] else 0.0

@@ -26,12 +26,12 @@ def advance_machine(
     edge: Rows,
     edges: Rows,
     pending: Rows,
-    begin_ns: int,
     cycle_ns: int,
     sub_steps: int,
     dc_epoch_ns: int,
+    begin_ns: int,
 ) -> int:
-    """Advance drives, mechanics and wiring over one cycle; return how many drives have raised a fault in it."""
+    """Advance drives, mechanics and wiring over the cycle that begins at `begin_ns`; return how many faults came."""
     axes = servo.shape[0]
     step_ns = cycle_ns // sub_steps
     time = step_ns * 1e-9

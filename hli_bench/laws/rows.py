@@ -4,8 +4,8 @@ Rows are state, owned by one node and never sent. Kernel rows count in 0.1 um (0
 machine rows in encoder increments, rad, Nm and seconds; instants are whole ns since bench start.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from typing import Any, Final
 
 import numpy as np
@@ -237,28 +237,26 @@ LOG: Final = np.dtype(
 )
 
 
-@cache
-def segment_dtype(axes: int) -> np.dtype[Any]:
-    """Return the dtype of a path segment for `axes` axes (lengths 0.1 um, velocities 0.1 um/s)."""
-    return np.dtype(
-        [
-            ("length", "f8"),
-            ("feed", "f8"),
-            ("rapid", "u1"),  # the feed override does not act above 100 %
-            ("v_start", "f8"),  # greatest velocity at which the axes may enter it
-            ("v_end", "f8"),
-            ("acceleration", "f8", (2,)),  # below / above `split`
-            ("deceleration", "f8", (2,)),
-            ("hold", "f8", (2,)),  # deceleration at feedhold
-            ("split", "f8"),
-            ("moves", "u1", (axes,)),
-            ("start", "f8", (axes,)),
-            ("direction", "f8", (axes,)),
-            ("end", "f8", (axes,)),
-        ],
-        align=True,
-    )
+SEGMENT: Final = np.dtype(
+    [
+        ("length", "f8"),  # 0.1 um
+        ("feed", "f8"),  # 0.1 um/s
+        ("rapid", "u1"),  # the feed override does not act above 100 %
+        ("v_start", "f8"),  # greatest velocity at which the axes may enter it
+        ("v_end", "f8"),
+        ("acceleration", "f8", (2,)),  # below / above `split`
+        ("deceleration", "f8", (2,)),
+        ("hold", "f8", (2,)),  # deceleration at feedhold
+        ("split", "f8"),
+    ],
+    align=True,
+)
 
+LEG: Final = np.dtype(
+    [("moves", "u1"), ("start", "f8"), ("direction", "f8"), ("end", "f8")],  # positions 0.1 um
+    align=True,
+)
+"""What one axis does in a path segment."""
 
 DYNAMICS: Final = np.dtype(
     [
@@ -271,29 +269,39 @@ DYNAMICS: Final = np.dtype(
 """What an axis may do in a kind of block."""
 
 
-@cache
-def plan_dtype(axes: int) -> np.dtype[Any]:
-    """Return the dtype of the end of the prepared path for `axes` axes (0.1 um, 0.1 um/s)."""
-    return np.dtype(
-        [
-            ("end", "f8", (axes,)),
-            ("joined", "u1"),  # the next segment may follow without a stop
-            ("direction", "f8", (axes,)),  # of the last segment
-            ("velocity", "f8"),  # its feed
-            ("linear", "u1", (axes,)),  # axes that the F word counts before the others
-        ],
-        align=True,
-    )
+PLAN: Final = np.dtype(
+    [
+        ("joined", "u1"),  # the next segment may follow without a stop
+        ("velocity", "f8"),  # feed of the last segment, 0.1 um/s
+    ],
+    align=True,
+)
+"""The end of the prepared path."""
+
+TIP: Final = np.dtype(
+    [
+        ("end", "f8"),  # 0.1 um
+        ("direction", "f8"),  # in the last segment
+        ("linear", "u1"),  # the F word counts it before the others
+    ],
+    align=True,
+)
+"""The end of the prepared path, of one axis."""
 
 
 @dataclass(slots=True)
 class KernelRows:
-    """The numbers of the kernel: axis (n,), path, plan (1,), segment, watch (m,), history (H, n), log (L, n)."""
+    """The numbers of the kernel: axis, tip (n,), path, plan (1,), segment (S,), leg (S, n), watch (m,).
+
+    And behind them: history (H, n), log (L, n).
+    """
 
     axis: Rows
     path: Rows
     segment: Rows
+    leg: Rows
     plan: Rows
+    tip: Rows
     watch: Rows
     history: NDArray[np.int64]
     log: Rows
@@ -304,8 +312,10 @@ class KernelRows:
         rows = cls(
             axis=np.zeros(axes, AXIS),
             path=np.zeros(1, PATH_ROW),
-            segment=np.zeros(SEGMENTS, segment_dtype(axes)),
-            plan=np.zeros(1, plan_dtype(axes)),
+            segment=np.zeros(SEGMENTS, SEGMENT),
+            leg=np.zeros((SEGMENTS, axes), LEG),
+            plan=np.zeros(1, PLAN),
+            tip=np.zeros(axes, TIP),
             watch=np.zeros(watches, WATCH),
             history=np.zeros((HISTORY_CYCLES, axes), np.int64),
             log=np.zeros((LOG_CYCLES, axes), LOG),
@@ -346,3 +356,28 @@ class MachineRows:
         rows.channel["signal"] = -1
         rows.channel["level_due_ns"] = np.iinfo(np.int64).max
         return rows
+
+
+TABLES: Final[Mapping[str, tuple[np.dtype[Any], int]]] = {
+    "axis": (AXIS, 1),
+    "path": (PATH_ROW, 1),
+    "segment": (SEGMENT, 1),
+    "leg": (LEG, 2),
+    "plan": (PLAN, 1),
+    "tip": (TIP, 1),
+    "dynamics": (DYNAMICS, 1),
+    "target": (np.dtype("f8"), 1),
+    "watch": (WATCH, 1),
+    "history": (np.dtype("i8"), 2),
+    "log": (LOG, 2),
+    "servo": (SERVO, 1),
+    "switch": (SWITCH, 1),
+    "signal": (SIGNAL, 1),
+    "channel": (CHANNEL, 1),
+    "edge": (EDGE, 1),
+    "edges": (np.dtype("i8"), 1),
+    "pending": (np.dtype("i8"), 2),
+    "image": (np.dtype("u1"), 1),
+    "offsets": (np.dtype("i8"), 1),
+}
+"""What the parameters of a law are that are tables: dtype and number of dimensions by name."""

@@ -14,23 +14,23 @@ STRAIGHT = 1e-9
 
 
 @law
-def path_length(one: Row, linear: Rows) -> float:
+def path_length(leg: Rows, slot: int, tip: Rows) -> float:
     """Return the length that the F word counts: of the linear axes when any moves, else of all that move."""
     squares = 0.0
-    for number in range(linear.shape[0]):
-        if one["moves"][number] and linear[number]:
-            way = one["end"][number] - one["start"][number]
+    for number in range(tip.shape[0]):
+        if leg[slot, number]["moves"] and tip[number]["linear"]:
+            way = leg[slot, number]["end"] - leg[slot, number]["start"]
             squares += way * way
     if squares == 0.0:
-        for number in range(linear.shape[0]):
-            if one["moves"][number]:
-                way = one["end"][number] - one["start"][number]
+        for number in range(tip.shape[0]):
+            if leg[slot, number]["moves"]:
+                way = leg[slot, number]["end"] - leg[slot, number]["start"]
                 squares += way * way
     return math.sqrt(squares)
 
 
 @law
-def take_dynamics(one: Row, dynamics: Rows) -> float:
+def take_dynamics(one: Row, leg: Rows, slot: int, dynamics: Rows) -> float:
     """Give a segment the rates that exceed no axis's own; return the greatest velocity they leave."""
     limit = math.inf
     split = math.inf
@@ -39,9 +39,9 @@ def take_dynamics(one: Row, dynamics: Rows) -> float:
         one["deceleration"][rank] = math.inf
         one["hold"][rank] = math.inf
     for number in range(dynamics.shape[0]):
-        if not one["moves"][number]:
+        if not leg[slot, number]["moves"]:
             continue
-        part = abs(one["direction"][number])
+        part = abs(leg[slot, number]["direction"])
         may = dynamics[number]
         for rank in range(2):
             one["acceleration"][rank] = min(one["acceleration"][rank], may["up"][rank] / part)
@@ -54,13 +54,14 @@ def take_dynamics(one: Row, dynamics: Rows) -> float:
 
 
 @law
-def join(path: Rows, segment: Rows, plan: Rows, dynamics: Rows, number: int, cycle_s: float) -> None:
+def join(
+    path: Rows, segment: Rows, leg: Rows, last: Row, tip: Rows, dynamics: Rows, number: int, cycle_s: float
+) -> None:
     """Let the path run from the segment before into `number` as fast as no axis jumps and all can brake."""
-    last = plan[0]
     one = segment[number % SEGMENTS]
     through = min(one["feed"], last["velocity"])
     for axis in range(dynamics.shape[0]):
-        turn = abs(one["direction"][axis] - last["direction"][axis])
+        turn = abs(leg[number % SEGMENTS, axis]["direction"] - tip[axis]["direction"])
         if turn > STRAIGHT:
             jump = min(dynamics[axis]["up"][0], dynamics[axis]["down"][0]) * cycle_s
             through = min(through, jump / turn)
@@ -81,12 +82,14 @@ def put_segment(
     axis: Rows,
     path: Rows,
     segment: Rows,
+    leg: Rows,
     plan: Rows,
-    dynamics: Rows,
+    tip: Rows,
     target: Rows,
+    cycle_s: float,
+    dynamics: Rows,
     feed: float,
     rapid: int,
-    cycle_s: float,
 ) -> int:
     """Put a straight way to `target` (n, 0.1 um; NaN: not programmed) behind the prepared path.
 
@@ -94,31 +97,34 @@ def put_segment(
     """
     here = plan[0]
     number = path[0]["tail"]
-    one = segment[number % SEGMENTS]
+    slot = number % SEGMENTS
+    one = segment[slot]
     moving = False
     for i in range(axis.shape[0]):
-        one["start"][i] = here["end"][i]
-        one["end"][i] = here["end"][i] if math.isnan(target[i]) else target[i]
-        one["moves"][i] = abs(one["end"][i] - one["start"][i]) > SHORTEST
-        moving = moving or one["moves"][i] != 0
+        way = leg[slot, i]
+        way["start"] = tip[i]["end"]
+        way["end"] = tip[i]["end"] if math.isnan(target[i]) else target[i]
+        way["moves"] = abs(way["end"] - way["start"]) > SHORTEST
+        moving = moving or way["moves"] != 0
     if not moving:
         return NOTHING
-    one["length"] = path_length(one, here["linear"])
+    one["length"] = path_length(leg, slot, tip)
     for i in range(axis.shape[0]):
-        one["direction"][i] = (one["end"][i] - one["start"][i]) / one["length"] if one["moves"][i] else 0.0
-    limit = take_dynamics(one, dynamics)
+        way = leg[slot, i]
+        way["direction"] = (way["end"] - way["start"]) / one["length"] if way["moves"] else 0.0
+    limit = take_dynamics(one, leg, slot, dynamics)
     one["feed"] = limit if rapid else min(feed, limit)
     one["rapid"] = rapid
     one["v_start"] = 0.0
     one["v_end"] = 0.0
     if here["joined"] and path[0]["state"] != IDLE:
-        join(path, segment, plan, dynamics, number, cycle_s)
+        join(path, segment, leg, here, tip, dynamics, number, cycle_s)
     here["joined"] = 1
     here["velocity"] = one["feed"]
     for i in range(axis.shape[0]):
-        here["direction"][i] = one["direction"][i]
-        here["end"][i] = one["end"][i]
-        if one["moves"][i]:
+        tip[i]["direction"] = leg[slot, i]["direction"]
+        tip[i]["end"] = leg[slot, i]["end"]
+        if leg[slot, i]["moves"]:
             axis[i]["mode"] = PATH
     path[0]["tail"] = number + 1
     if path[0]["state"] == IDLE:
@@ -126,4 +132,4 @@ def put_segment(
         path[0]["s"] = 0.0
         path[0]["v"] = 0.0
         path[0]["state"] = RUN
-    return number
+    return int(number)

@@ -17,6 +17,8 @@ SENSE: Final = 1
 """Machine has moved, the kernel has not looked yet; as a result: a drive raised a fault."""
 ACT: Final = 2
 """Kernel has looked, not interpolated yet; as a result: conditions fired, or the caller wants to."""
+PLACES: Final = 4
+"""The result of a stride is cycles completed x PLACES + where it stopped."""
 
 
 @law
@@ -51,6 +53,7 @@ def stride(
     axis: Rows,
     path: Rows,
     segment: Rows,
+    leg: Rows,
     watch: Rows,
     history: Rows,
     log: Rows,
@@ -61,15 +64,15 @@ def stride(
     edge: Rows,
     edges: Rows,
     pending: Rows,
+    cycle_ns: int,
+    sub_steps: int,
+    dc_epoch_ns: int,
     cycle: int,
     cycles: int,
     phase: int,
     stop_to_act: int,
-    cycle_ns: int,
-    sub_steps: int,
-    dc_epoch_ns: int,
-) -> tuple[int, int]:
-    """Run up to `cycles` cycles; cycle `cycle` is the first. Return (cycles completed, where it stopped).
+) -> int:
+    """Run up to `cycles` cycles; cycle `cycle` is the first. Return cycles completed x PLACES + where it stopped.
 
     With `stop_to_act` the first cycle is left behind `sense`, so that the caller can decide before `act`.
     """
@@ -84,24 +87,24 @@ def stride(
                 edge,
                 edges,
                 pending,
-                begin_ns,
                 cycle_ns,
                 sub_steps,
                 dc_epoch_ns,
+                begin_ns,
             )
             exchange_in(axis, servo)
             exchange_out(axis, servo)
             phase = SENSE
             if faults:
-                return done, SENSE
+                return done * PLACES + SENSE
         if phase == SENSE:
             phase = ACT
             if sense(axis, path, watch, history, cycle) or stop_to_act:
-                return done, ACT
-        act(axis, path, segment, cycle_ns)
+                return done * PLACES + ACT
+        act(axis, path, segment, leg, cycle_ns)
         write_log(axis, log, cycle % LOG_CYCLES)
         phase = MACHINE
         cycle += 1
         if edges[0] > edge.shape[0] // 2:
-            return done + 1, MACHINE
-    return cycles, MACHINE
+            return (done + 1) * PLACES + MACHINE
+    return cycles * PLACES + MACHINE

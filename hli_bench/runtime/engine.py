@@ -13,7 +13,7 @@ from hli_bench.base.time import Ns
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.records import Emitted
 from hli_bench.laws import stride as law
-from hli_bench.laws.compiled import straight
+from hli_bench.laws.native import bind
 from hli_bench.laws.rows import LOG_CYCLES, MachineRows, Rows
 from hli_bench.protocols.hli.access import Access, Refusal
 from hli_bench.wire.can import CanFrame
@@ -36,7 +36,7 @@ class Link(Protocol):
     def telegrams(self, cycle: int, inbox: Sequence[CanFrame]) -> list[CanFrame]:
         """Exchange the frames of a SYNC."""
 
-    def exchange(self, cycle: int, axis: Rows) -> None:
+    def exchange(self, cycle: int) -> None:
         """Exchange the numbers of a SYNC in which only control words changed."""
 
     def timers(self, cycle: int) -> list[CanFrame]:
@@ -109,7 +109,6 @@ class Engine:
         self.lost: list[str] = []
         self._orders: list[CanFrame] = []
         self._decide = True
-        self._law = law.stride
         self._cycle_ns = kernel.setup.cycle_ns
         self._tick = NO_TICK
         self._loud = 0
@@ -117,10 +116,12 @@ class Engine:
         self._words: bytes = b""
         self._new_words = True
         machine, rows = link.rows, kernel.rows
-        self._rows = (
+        self._law = bind(
+            law.stride,
             rows.axis,
             rows.path,
             rows.segment,
+            rows.leg,
             rows.watch,
             rows.history,
             rows.log,
@@ -131,18 +132,15 @@ class Engine:
             machine.edge,
             machine.edges,
             pending,
+            self._cycle_ns,
+            link.sub_steps,
+            kernel.setup.dc_epoch_ns,
         )
-        self._times = (self._cycle_ns, link.sub_steps, kernel.setup.dc_epoch_ns)
 
     @property
     def dc_ns(self) -> Ns:
         """DC time of the last completed cycle."""
         return Ns(self.kernel.setup.dc_epoch_ns + self.cycle * self._cycle_ns)
-
-    def compile(self) -> None:
-        """Have the laws compiled for these rows where they are not yet, and call them without detours."""
-        self.kernel.compile()
-        self._law = straight(law.stride, *self._rows, 0, 0, law.MACHINE, 0, *self._times)
 
     def power_on(self) -> None:
         """Boot the drives and begin the start-up of the kernel."""
@@ -240,7 +238,7 @@ class Engine:
     def _exchange(self, cycle: int) -> None:
         """Pass the telegrams of a cycle in which a control word changes, by numbers."""
         self._words, self._new_words, self._loud = self._word_bytes(), False, 0
-        self.link.exchange(cycle, self.kernel.rows.axis)
+        self.link.exchange(cycle)
 
     def _timers(self, cycle: int) -> None:
         """Take what the drives send by time in a quiet cycle."""
@@ -264,10 +262,10 @@ class Engine:
 
     def _stride(self, cycle: int, cycles: int, phase: int) -> tuple[int, int]:
         stop, self._decide = (self._decide, False) if phase != law.ACT else (False, self._decide)
-        result: tuple[int, int] = self._law(*self._rows, cycle, cycles, phase, int(stop), *self._times)
-        if stop and result[1] == law.SENSE:
+        done, where = divmod(self._law(cycle, cycles, phase, stop), law.PLACES)
+        if stop and where == law.SENSE:
             self._decide = True
-        return result
+        return done, where
 
     def _think(self, cycle: int) -> None:
         """Let the kernel decide between sense and act."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from hli_bench.base.time import Ns
 from hli_bench.laws.machine import advance_machine
+from hli_bench.laws.native import bind
 from hli_bench.laws.rows import MachineRows, Rows
 from hli_bench.laws.stride import exchange_in
 from hli_bench.wire.can import CanFrame
@@ -76,11 +77,15 @@ class TerminalNode(Protocol):
 
 
 class MachineSide:
-    """Steps everything that is not the CNC. `pending` holds coming changes of signals (contact bounce)."""
+    """Steps everything that is not the CNC.
+
+    `axis` holds the numbers of the telegrams as the CNC has them, `pending` coming changes of signals (bounce).
+    """
 
     def __init__(
         self,
         rows: MachineRows,
+        axis: Rows,
         pending: NDArray[np.int64],
         drives: Sequence[DriveNode],
         terminals: Sequence[TerminalNode],
@@ -91,6 +96,7 @@ class MachineSide:
         forced: Sequence[Forced] = (),
     ) -> None:
         self.rows = rows
+        self._axis = axis
         self.pending = pending
         self.drives = drives
         self.terminals = terminals
@@ -108,6 +114,20 @@ class MachineSide:
         """The channels' rows as of the last images: without a change there the images stay."""
         self._images: Mapping[str, bytes] = {}
         self._forced = sorted(forced, key=lambda one: one.at_ns)
+        self._exchange_in = bind(exchange_in, axis, rows.servo)
+        self._advance = bind(
+            advance_machine,
+            rows.servo,
+            rows.switch,
+            rows.signal,
+            rows.channel,
+            rows.edge,
+            rows.edges,
+            pending,
+            cycle_ns,
+            sub_steps,
+            dc_epoch_ns,
+        )
 
     def power_on(self) -> list[CanFrame]:
         """Boot all nodes: their boot-up messages."""
@@ -115,21 +135,9 @@ class MachineSide:
 
     def advance(self, cycle: int) -> None:
         """Move the machine to the SYNC of `cycle`."""
-        rows = self.rows
-        self._force(Ns((cycle - 1) * self.cycle_ns))
-        advance_machine(
-            rows.servo,
-            rows.switch,
-            rows.signal,
-            rows.channel,
-            rows.edge,
-            rows.edges,
-            self.pending,
-            (cycle - 1) * self.cycle_ns,
-            self.cycle_ns,
-            self.sub_steps,
-            self.dc_epoch_ns,
-        )
+        begin = Ns((cycle - 1) * self.cycle_ns)
+        self._force(begin)
+        self._advance(begin)
 
     def telegrams(self, cycle: int, inbox: Iterable[CanFrame]) -> list[CanFrame]:
         """Hand the drives what the bus carried since the last SYNC, then this SYNC; return what they send."""
@@ -143,11 +151,12 @@ class MachineSide:
         self._due, self._ticked, self._words = NOT_KNOWN, cycle, b""
         return sorted(frames, key=lambda frame: frame.cob_id)
 
-    def exchange(self, cycle: int, axis: Rows) -> None:
+    def exchange(self, cycle: int) -> None:
         """Pass the standard telegrams of a SYNC in which only control words changed, by numbers."""
         now = Ns(cycle * self.cycle_ns)
+        axis = self._axis
         words = axis["controlword"].tobytes()
-        exchange_in(axis, self.rows.servo)
+        self._exchange_in()
         same = words == self._words
         self._words = words
         for drive, row in zip(self.drives, axis, strict=True):

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from hli_bench.laws import cache
+
 LEAST_PYTHON: Final = (3, 11)
 LEAST_LOCKED_BYTES: Final = 64 * 1024 * 1024
 """Locked memory a paced bench asks for, so that no page fault delays a cycle (decided here)."""
@@ -19,7 +21,6 @@ PORTS: Final[Mapping[int, str]] = {7447: "Zenoh", 29536: "socketcand"}
 LOOPBACK: Final = "127.0.0.1"
 _ARPHRD_CAN: Final = 280
 _NETWORK_CLASS: Final = Path("/sys/class/net")
-_LAWS: Final = Path(__file__).resolve().parent.parent / "laws"
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,11 +151,8 @@ def loopback_port(port: int, purpose: str) -> Finding:
 
 
 def compiler_cache(environment: Mapping[str, str] | None = None) -> Finding:
-    """Say where the compiled laws are kept between runs: numba takes the first place that can be written."""
-    environment = os.environ if environment is None else environment
-    chosen = environment.get("NUMBA_CACHE_DIR")
-    users = environment.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
-    places = [Path(chosen)] if chosen else [_LAWS / "__pycache__", Path(users) / "numba"]
+    """Say where the compiled laws are kept between runs: in the first place that can be written."""
+    places = cache.places(os.environ if environment is None else environment)
     found = next((place for place in places if _can_be_written(place)), None)
     return Finding(
         "compiler-cache",

@@ -114,5 +114,9 @@ def test_a_cache_below_a_file_is_found_and_the_variable_named(tmp_path: Path) ->
     assert "NUMBA_CACHE_DIR" in finding.advice
 
 
-def test_without_the_variable_the_cache_lies_beside_the_laws() -> None:
-    assert environment.compiler_cache({}).detail.endswith("hli_bench/laws/__pycache__")
+def test_without_the_variable_the_cache_is_the_user_s_or_lies_beside_the_laws(tmp_path: Path) -> None:
+    finding = environment.compiler_cache({"XDG_CACHE_HOME": str(tmp_path)})
+    assert finding.detail == str(tmp_path / "hli-bench")
+    (tmp_path / "hli-bench").write_text("a file")
+    finding = environment.compiler_cache({"XDG_CACHE_HOME": str(tmp_path)})
+    assert finding.detail.endswith("hli_bench/laws/__pycache__")

@@ -130,32 +130,37 @@ def test_commands_find_their_data(command: Command, arguments: tuple[str, ...], 
     assert shown in run.stdout
 
 
-ONE_LAW = "from hli_bench.laws.profile import braking_path; print(braking_path(1.0, 2.0, 1.0, 1.0, 1.0))"
+PREPARE = "from hli_bench.laws.native import prepare; prepare(lambda: print('compiling'))"
 
 
-def test_an_install_that_cannot_be_written_keeps_its_compiled_laws_in_the_home(
+PREPARE = "from hli_bench.laws.native import prepare; prepare(lambda: print('compiling'))"
+
+
+def test_the_compiled_laws_are_kept_in_the_home_and_survive_a_new_installation(
     installed: Path, command: Command, tmp_path: Path
 ) -> None:
-    _block_cache(installed)
-    run = command("python", "-c", ONE_LAW)
-    assert run.stdout == "0.0\n", run.stderr
-    assert list((tmp_path / "home" / ".cache" / "numba").rglob("profile.braking_path-*.nbc"))
-    assert str(tmp_path / "home" / ".cache" / "numba") in command("hli-bench", "doctor").stdout
+    run = command("python", "-c", PREPARE)
+    assert run.stdout == "compiling\n", run.stderr
+    assert list((tmp_path / "home" / ".cache" / "hli-bench").glob("laws-*.bin"))
+    assert str(tmp_path / "home" / ".cache" / "hli-bench") in command("hli-bench", "doctor").stdout
+    for file in _laws(installed).glob("*.py"):
+        file.touch()
+    shutil.rmtree(_laws(installed) / "__pycache__")
+    assert command("python", "-c", PREPARE).stdout == ""
 
 
 def test_without_any_place_for_them_the_laws_are_compiled_anew(
     installed: Path, command: Command, tmp_path: Path
 ) -> None:
-    _block_cache(installed)
-    (tmp_path / "home" / ".cache").write_text("a file: nothing can be kept below it")
-    run = command("python", "-c", ONE_LAW)
-    assert run.stdout == "0.0\n", run.stderr
+    """Files stand where the places would be: they stop root too, which permissions do not."""
+    shutil.rmtree(_laws(installed) / "__pycache__", ignore_errors=True)
+    (_laws(installed) / "__pycache__").write_text("")
+    (tmp_path / "home" / ".cache").write_text("")
+    for _ in range(2):
+        run = command("python", "-c", PREPARE)
+        assert run.stdout == "compiling\n", run.stderr
 
 
-def _block_cache(installed: Path) -> None:
-    """Take away the place for caches beside the laws; a file stops root too, which permissions do not."""
+def _laws(installed: Path) -> Path:
     (laws,) = (installed.parent / "lib").glob("python*/site-packages/hli_bench/laws")
-    cache = laws / "__pycache__"
-    if cache.is_dir():
-        shutil.rmtree(cache)
-        cache.write_text("")
+    return laws

@@ -1,7 +1,7 @@
 """The look-ahead as the channel commands it; its numbers are the compiled `put_segment`."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -9,9 +9,10 @@ from hli_bench.base.ids import AxisIndex
 from hli_bench.base.units import TENTH_UM_PER_MM, tenth_um_per_s
 from hli_bench.kernel.blocks import Line, MeasuringRun
 from hli_bench.kernel.path_preparation import dynamics
-from hli_bench.kernel.path_preparation.dynamics import Ramp
+from hli_bench.kernel.path_preparation.dynamics import Dynamics, Ramp
 from hli_bench.kernel.setup import KernelSetup
-from hli_bench.laws.rows import SEGMENTS, KernelRows, Rows
+from hli_bench.laws.native import Entry, bind
+from hli_bench.laws.rows import SEGMENTS, KernelRows
 from hli_bench.laws.segments import NOTHING, put_segment
 
 
@@ -22,16 +23,16 @@ class Preparation:
         self._setup = setup
         self._rows = rows
         measuring = [dynamics.measuring(axis, setup.channel) for axis in setup.axes]
-        self._rapid = dynamics.rows(dynamics.rapid(axis, setup.channel) for axis in setup.axes)
-        self._feed = dynamics.rows(dynamics.feed(axis, setup.channel) for axis in setup.axes)
-        self._measuring = dynamics.rows(profile for profile, _ in measuring)
-        self._behind_event = [ramp for _, ramp in measuring]
         self._target = np.empty(len(setup.axes))
-        rows.plan["linear"] = [axis.kind == "T" for axis in setup.axes]
+        self._rapid = self._way(dynamics.rapid(axis, setup.channel) for axis in setup.axes)
+        self._feed = self._way(dynamics.feed(axis, setup.channel) for axis in setup.axes)
+        self._measuring = self._way(profile for profile, _ in measuring)
+        self._behind_event = [ramp for _, ramp in measuring]
+        rows.tip["linear"] = [axis.kind == "T" for axis in setup.axes]
 
     def synchronise(self) -> None:
         """Begin anew where the set points are (after a stop, a measuring run, homing)."""
-        self._rows.plan["end"] = self._rows.axis["command"]
+        self._rows.tip["end"] = self._rows.axis["command"]
         self._rows.plan["joined"] = 0
 
     @property
@@ -42,8 +43,8 @@ class Preparation:
 
     def line(self, block: Line) -> int | None:
         """Put a block of straight motion; return its segment number, None when it moves nothing."""
-        may = self._rapid if block.rapid else self._feed
-        return self._put(block.target, tenth_um_per_s(block.feed), may, rapid=block.rapid)
+        way = self._rapid if block.rapid else self._feed
+        return self._put(way, block.target, tenth_um_per_s(block.feed), rapid=block.rapid)
 
     def measuring_run(
         self, block: MeasuringRun, feed: float, offsets: Mapping[AxisIndex, float]
@@ -53,16 +54,16 @@ class Preparation:
         `offsets` (0.1 um) is how far past the target an axis may go while nothing was probed
         (P-AXIS-00467). Returns None when the block moves nothing.
         """
-        number = self._put(block.target, feed, self._measuring, rapid=False)
+        number = self._put(self._measuring, block.target, feed, rapid=False)
         if number is None:
             return None
-        segment = self._rows.segment[number % SEGMENTS]
+        segment, leg = self._rows.segment[number % SEGMENTS], self._rows.leg[number % SEGMENTS]
         length = float(segment["length"])
-        moved = [i for i, offset in offsets.items() if segment["moves"][i] and offset >= 0]
-        beyond = min((offsets[i] / abs(segment["direction"][i]) for i in moved), default=0.0)
+        moved = [i for i, offset in offsets.items() if leg[i]["moves"] and offset >= 0]
+        beyond = min((offsets[i] / abs(leg[i]["direction"]) for i in moved), default=0.0)
         if beyond > 0.0:
             segment["length"] = length + beyond
-            segment["end"] = segment["end"] + segment["direction"] * beyond
+            leg["end"] += leg["direction"] * beyond
         return number, length
 
     def limit_feed(self, number: int, stroke: float) -> tuple[float, float]:
@@ -77,32 +78,37 @@ class Preparation:
 
     def brake_ramp(self, number: int) -> Ramp:
         """Return the deceleration after the probing event along segment `number`."""
-        segment = self._rows.segment[number % SEGMENTS]
-        moved = np.flatnonzero(segment["moves"])
+        leg = self._rows.leg[number % SEGMENTS]
+        moved = np.flatnonzero(leg["moves"])
         return dynamics.ramp_along(
-            [self._behind_event[int(i)] for i in moved], [float(segment["direction"][i]) for i in moved]
+            [self._behind_event[int(i)] for i in moved], [float(leg[i]["direction"]) for i in moved]
         )
 
     def retraction(self, target: Mapping[AxisIndex, float], velocity: float) -> int | None:
         """Put a straight way to `target` (0.1 um, ACS) with `velocity` (0.1 um/s): relief after a fixed stop."""
         millimetres = {axis: position / TENTH_UM_PER_MM for axis, position in target.items()}
-        return self._put(millimetres, velocity, self._feed, rapid=False)
+        return self._put(self._feed, millimetres, velocity, rapid=False)
 
-    def _put(self, target: Mapping[AxisIndex, float], feed: float, may: Rows, *, rapid: bool) -> int | None:
-        """Put a straight way; `feed` in 0.1 um/s."""
+    def _way(self, may: Iterable[Dynamics]) -> Entry:
+        """Return the law that puts a straight way in which the axes may do what `may` says."""
         rows = self._rows
-        self._target.fill(math.nan)
-        for axis, position in target.items():
-            self._target[axis] = position * TENTH_UM_PER_MM
-        number: int = put_segment(
+        return bind(
+            put_segment,
             rows.axis,
             rows.path,
             rows.segment,
+            rows.leg,
             rows.plan,
-            may,
+            rows.tip,
             self._target,
-            feed,
-            rapid,
             self._setup.cycle_ns * 1e-9,
+            dynamics.rows(may),
         )
+
+    def _put(self, way: Entry, target: Mapping[AxisIndex, float], feed: float, *, rapid: bool) -> int | None:
+        """Put a straight way; `feed` in 0.1 um/s."""
+        self._target.fill(math.nan)
+        for axis, position in target.items():
+            self._target[axis] = position * TENTH_UM_PER_MM
+        number: int = way(feed, rapid)
         return None if number == NOTHING else number

@@ -239,9 +239,10 @@ def _before_target(run: Run, axis: AxisIndex, position: float) -> bool:
     segment = run.core.rows.segment[run.segment % SEGMENTS]
     if segment["length"] <= run.target_path:
         return True
-    if not segment["moves"][axis]:
+    leg = run.core.rows.leg[run.segment % SEGMENTS, axis]
+    if not leg["moves"]:
         return run.core.path.done <= run.target_path
-    return bool((position - segment["start"][axis]) / segment["direction"][axis] <= run.target_path)
+    return bool((position - leg["start"]) / leg["direction"] <= run.target_path)
 
 
 def _all_latched(phase: str, run: Run) -> str:

@@ -67,12 +67,12 @@ def line(rapid: bool = False, feed: float = 6000.0, **target: float) -> Line:
 
 def test_length_direction_and_end(preparation, rows):
     number = preparation.line(line(x=3, y=-4))
-    one = rows.segment[number]
+    one, leg = rows.segment[number], rows.leg[number]
 
     assert one["length"] == 50_000.0
-    assert tuple(one["direction"]) == (0.6, -0.8, 0.0)
-    assert tuple(one["end"]) == (30_000.0, -40_000.0, 0.0)
-    assert list(one["moves"]) == [1, 1, 0]
+    assert tuple(leg["direction"]) == (0.6, -0.8, 0.0)
+    assert tuple(leg["end"]) == (30_000.0, -40_000.0, 0.0)
+    assert list(leg["moves"]) == [1, 1, 0]
     assert one["feed"] == 1e6
 
 
@@ -86,7 +86,7 @@ def test_block_without_way_is_none(preparation, rows):
 def test_feed_counts_the_linear_axes_when_one_moves(preparation, rows):
     together = preparation.line(line(x=10, a=90))
     assert rows.segment[together]["length"] == 100_000.0
-    assert rows.segment[together]["direction"][2] == 9.0
+    assert rows.leg[together, 2]["direction"] == 9.0
     alone = preparation.line(line(a=180))
     assert rows.segment[alone]["length"] == 900_000.0
 
@@ -142,7 +142,7 @@ def test_travel_offset_lengthens_the_run_in_its_direction(preparation, rows):
 
     assert length == 500_000.0
     assert rows.segment[number]["length"] == pytest.approx(510_000.0), "X may go 0.6 mm further"
-    assert np.allclose(rows.segment[number]["end"][:2], (306_000.0, 408_000.0))
+    assert np.allclose(rows.leg[number, :2]["end"], (306_000.0, 408_000.0))
 
 
 @pytest.mark.req("M-214")

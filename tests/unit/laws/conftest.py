@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from hli_bench.laws.machine import advance_machine
+from hli_bench.laws.native import bind
 from hli_bench.plant.build import Plant, build
 from hli_bench.plant.settings import AxisPlant, PlantAxis, PlantSettings, Probe
 from hli_bench.terminals.settings import Channel
@@ -51,14 +52,9 @@ class Rig:
         self.cycle = 0
         self.faults = 0
         self.rows.servo["enabled"] = 1
-
-    @property
-    def now_ns(self) -> int:
-        return self.cycle * self.cycle_ns
-
-    def step(self) -> None:
         r = self.rows
-        self.faults += advance_machine(
+        self._advance = bind(
+            advance_machine,
             r.servo,
             r.switch,
             r.signal,
@@ -66,11 +62,17 @@ class Rig:
             r.edge,
             r.edges,
             self.plant.pending,
-            self.now_ns,
-            self.cycle_ns,
-            self.cycle_ns // 125_000,
+            cycle_ns,
+            cycle_ns // 125_000,
             EPOCH_NS,
         )
+
+    @property
+    def now_ns(self) -> int:
+        return self.cycle * self.cycle_ns
+
+    def step(self) -> None:
+        self.faults += self._advance(self.now_ns)
         self.cycle += 1
 
     def wait(self, cycles: int) -> None:

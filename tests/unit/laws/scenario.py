@@ -8,8 +8,9 @@ import sys
 
 import numpy as np
 
+from hli_bench.laws.native import bind
 from hli_bench.laws.rows import JOG, KernelRows
-from hli_bench.laws.stride import MACHINE, stride
+from hli_bench.laws.stride import MACHINE, PLACES, stride
 from hli_bench.plant.build import build
 from hli_bench.plant.settings import AxisPlant, Cam, Face, PlantAxis, PlantSettings, Probe, Stop
 from hli_bench.terminals.settings import Channel
@@ -75,31 +76,29 @@ def digest(cycles: int, per_stride: int) -> str:
     kernel.axis["jog_acceleration"] = 2e7
     kernel.axis["jog_velocity"] = [3e5, -2e5, 5e5]
     kernel.axis["probe_function"] = [0x0015, 0x0015, 0x0033]
+    go = bind(
+        stride,
+        kernel.axis,
+        kernel.path,
+        kernel.segment,
+        kernel.leg,
+        kernel.watch,
+        kernel.history,
+        kernel.log,
+        machine.servo,
+        machine.switch,
+        machine.signal,
+        machine.channel,
+        machine.edge,
+        machine.edges,
+        plant.pending,
+        1_000_000,
+        8,
+        EPOCH_NS,
+    )
     cycle = 1
     while cycle <= cycles:
-        done, _ = stride(
-            kernel.axis,
-            kernel.path,
-            kernel.segment,
-            kernel.watch,
-            kernel.history,
-            kernel.log,
-            machine.servo,
-            machine.switch,
-            machine.signal,
-            machine.channel,
-            machine.edge,
-            machine.edges,
-            plant.pending,
-            cycle,
-            min(per_stride, cycles + 1 - cycle),
-            MACHINE,
-            0,
-            1_000_000,
-            8,
-            EPOCH_NS,
-        )
-        cycle += done
+        cycle += go(cycle, min(per_stride, cycles + 1 - cycle), MACHINE, 0) // PLACES
     assert machine.edges[0] > 3
     rows = (
         kernel.axis,

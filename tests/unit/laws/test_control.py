@@ -42,9 +42,8 @@ def put(
     one["length"], one["feed"], one["v_end"], one["rapid"] = length, feed, v_end, rapid
     one["acceleration"] = one["deceleration"] = (1e7, 1e7)
     one["hold"] = (2e7, 2e7)
-    one["moves"] = (1, 0)
-    begin = rows.segment[(number - 1) % SEGMENTS]["end"][0] if number else rows.axis[0]["command"]
-    one["start"], one["direction"], one["end"] = (begin, 0.0), (1.0, 0.0), (begin + length, 0.0)
+    begin = rows.leg[(number - 1) % SEGMENTS, 0]["end"] if number else rows.axis[0]["command"]
+    rows.leg[number % SEGMENTS] = [(1, begin, 1.0, begin + length), (0, 0.0, 0.0, 0.0)]
     rows.path[0]["tail"] = number + 1
     if rows.path[0]["state"] == IDLE:
         rows.path[0]["state"], rows.path[0]["head"] = RUN, number
@@ -52,7 +51,7 @@ def put(
 
 def step(rows: KernelRows, cycles: int = 1) -> None:
     for _ in range(cycles):
-        act(rows.axis, rows.path, rows.segment, CYCLE_NS)
+        act(rows.axis, rows.path, rows.segment, rows.leg, CYCLE_NS)
 
 
 def met(rows: KernelRows, condition: Condition, cycles: int = 1, first: int = 1) -> bool:

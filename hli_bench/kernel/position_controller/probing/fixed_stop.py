@@ -53,7 +53,7 @@ def disarm(core: Core, axis: AxisIndex) -> None:
 
 def _armed_from(core: Core) -> float:
     """Return the path in the block (0.1 um) behind which a stop counts: the smallest of all axes it moves."""
-    segment = core.rows.segment[core.path.segment % SEGMENTS]
-    length = float(segment["length"])
-    moved = [axis for axis in core.setup.axes if segment["moves"][axis.index]]
+    slot = core.path.segment % SEGMENTS
+    length = float(core.rows.segment[slot]["length"])
+    moved = [axis for axis in core.setup.axes if core.rows.leg[slot, axis.index]["moves"]]
     return min(fixed_stop_start_distance(axis.params, length) for axis in moved)

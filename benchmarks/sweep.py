@@ -16,8 +16,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from hli_bench.base import garbage
 from hli_bench.sweep import campaign as campaigns
-from hli_bench.sweep.engines import GC, Dask, LocalProcesses
+from hli_bench.sweep.engines import Dask, LocalProcesses
 from hli_bench.sweep.sweep import run
 from hli_bench.sweep.work import Job, Row, Run, run_chunk
 
@@ -54,7 +55,7 @@ def main() -> None:
     runs = RUNS // 10 if parser.parse_args().quick else RUNS
     gc.collect()
     gc.freeze()
-    gc.set_threshold(*GC)
+    garbage.seldom()
     cores = len(os.sched_getaffinity(0))
     print(
         f"reference: {reference() / 1e6:.1f} million additions a second in a plain Python loop, {cores} cores"

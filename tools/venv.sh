@@ -39,3 +39,5 @@ echo "installing what $lock lists into .venv ..." >&2
 "${pip[@]}" install --require-hashes --requirement "$lock"
 # The build tools stand in the lock; without isolation pip does not fetch newer ones.
 "${pip[@]}" install --no-build-isolation --no-deps --editable .
+# Where PYTHONDONTWRITEBYTECODE is set, every command would compile the package anew: 0.2 s of its start.
+.venv/bin/python -m compileall -q hli_bench drives

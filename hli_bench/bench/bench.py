@@ -5,15 +5,13 @@ from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.time import NS_PER_S
 from hli_bench.bench import build, state
 from hli_bench.bench.config import MachineConfig, PlcConfig, load
-from hli_bench.bench.door import HliDoor, result_reply
 from hli_bench.bench.plc_ports import LocalPlc
-from hli_bench.bench.remote import RemoteEngine, RemoteMachine
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.bench.standstill import Standstill
 from hli_bench.kernel.records import Emitted
@@ -26,7 +24,10 @@ from hli_bench.runtime.engine import Engine, Observer
 from hli_bench.shells.pacing import RealPace, Stopwatch
 from hli_bench.shells.processes import Deadline, PlcProcess, free_endpoint
 from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
-from hli_bench.shells.zenoh_server import HliServer
+
+if TYPE_CHECKING:
+    from hli_bench.bench.door import HliDoor
+    from hli_bench.bench.remote import RemoteMachine
 
 START_UP_CYCLES: Final = 2000
 """Cycles within which all drives must have come into operation."""
@@ -225,6 +226,8 @@ class Bench:
         In free pace time stands still while no program runs; a client's write lets the cycles pass that it
         needs to take effect.
         """
+        from hli_bench.bench.door import result_reply
+
         door = self._door
         if door is None:
             raise InputError("a bench that stays up needs an endpoint (--zenoh)")
@@ -264,6 +267,9 @@ class Bench:
             side = build.machine_side(self.config, self.kernel.rows.axis)
             self.terminal_layouts = build.terminal_layouts(self.config)
             return Engine(self.kernel, side, side.pending)
+        # Zenoh and CAN are imported by benches that have them: they take longer than a short program.
+        from hli_bench.bench.remote import RemoteEngine, RemoteMachine
+
         rows = self.kernel.rows.axis
         remote = self._closing.enter_context(
             RemoteMachine(self.config, machine, settings, can, rows, realtime=self._realtime)
@@ -286,7 +292,10 @@ class Bench:
         for note in calm.notes:
             self._on_note(note)
 
-    def _open_door(self, endpoint: str, *, lockstep: bool) -> HliDoor:
+    def _open_door(self, endpoint: str, *, lockstep: bool) -> "HliDoor":
+        from hli_bench.bench.door import HliDoor
+        from hli_bench.shells.zenoh_server import HliServer
+
         server = HliServer(endpoint, self.config.name, self.kernel.image.layout, self.terminal_layouts)
         self._closing.enter_context(server)
         self._tap.door = HliDoor(

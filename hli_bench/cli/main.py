@@ -12,6 +12,7 @@ import sys
 from collections.abc import Sequence
 from typing import Final
 
+from hli_bench.base import garbage
 from hli_bench.base.errors import BenchError
 from hli_bench.cli import doctor, drive, hli, machine, params, plc, run, serve, state, sweep, trace, unbuilt
 
@@ -43,6 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    garbage.seldom()
     arguments = parser().parse_args(argv)
     _take_signals()
     try:

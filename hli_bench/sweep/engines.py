@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from multiprocessing.connection import Connection, wait
 from typing import Any, Final, Protocol, cast
 
+from hli_bench.base import garbage
 from hli_bench.base.errors import EnvironmentLacks, InputError
 from hli_bench.base.loading import module
 from hli_bench.sweep.work import Failure, Job, Row, Run, code_digest, run_chunk
@@ -19,8 +20,6 @@ _Pipe = Connection
 AHEAD: Final = 2
 """Chunks that a worker has at a time: one at work, one waiting, so that it never waits itself."""
 END_S: Final = 5.0
-GC: Final = (50_000, 20, 100)
-"""When a worker collects garbage: a bench is some ten thousand objects that go together, what is loaded stays."""
 DASK: Final = "dask://"
 LOCAL: Final = "local"
 DASK_LOCAL: Final = "dask-local"
@@ -118,7 +117,7 @@ def _serve(pipe: _Pipe, job: Job, work: Work) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.collect()
     gc.freeze()
-    gc.set_threshold(*GC)
+    garbage.seldom()
     while True:
         try:
             runs = pipe.recv()

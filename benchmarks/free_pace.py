@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 from hli_bench import Bench
+from hli_bench.base import garbage
 
 MACHINE = Path(__file__).parent / "machines" / "three_axes"
 FACE = {"plant.probe.Z.face_mm": 250.0, "plant.probe.Z.material": "below"}
@@ -41,6 +42,7 @@ def measure(name: str, settings: dict[str, object], plc: list[str] | None) -> No
 
 def main() -> None:
     """Measure all kinds in turn."""
+    garbage.seldom()  # as the command line does
     print(f"probing in free pace, 3 axes, cycle 1 ms, {TURNS} turns")
     measure("DRIVE latch, no PLC", {"axis.Z.kenngr.measure.signal": "DRIVE"}, [])
     for period_ms in (10, 1):

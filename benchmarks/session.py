@@ -13,7 +13,6 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).parent
-TURNS = int(sys.argv[1]) if len(sys.argv) > 1 else 100
 SETTINGS = [
     "axis.Z.kenngr.measure.signal=DRIVE",
     *(
@@ -37,7 +36,8 @@ def program() -> str:
 
 
 def main() -> None:
-    """Run the session many times and compare the results."""
+    """Run the session many times (100, or the number given) and compare the results."""
+    turns = int(sys.argv[1]) if len(sys.argv) > 1 else 100
     with tempfile.TemporaryDirectory() as folder:
         source, result = Path(folder, "session.nc"), Path(folder, "result.json")
         source.write_text(program(), encoding="utf-8")
@@ -45,7 +45,7 @@ def main() -> None:
                    "--machine", str(HERE / "machines" / "three_axes"), "--plc", "none",
                    *(part for setting in SETTINGS for part in ("--set", setting))]  # fmt: skip
         times, digests = [], set()
-        for _ in range(TURNS + 1):
+        for _ in range(turns + 1):
             start = time.perf_counter()
             subprocess.run(command, check=True, capture_output=True)
             times.append(time.perf_counter() - start)
@@ -58,7 +58,7 @@ def main() -> None:
     same = "all results identical" if len(digests) == 1 else "RESULTS DIFFER"
     median, best = statistics.median(times[1:]), min(times[1:])
     print(
-        f"session of {sim_s:.1f} s machine time, {TURNS} cold commands: median {median:.2f} s, best {best:.2f} s"
+        f"session of {sim_s:.1f} s machine time, {turns} cold commands: median {median:.2f} s, best {best:.2f} s"
     )
     print(same)
 

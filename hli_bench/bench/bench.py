@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 START_UP_CYCLES: Final = 2000
 """Cycles within which all drives must have come into operation."""
 FOREVER: Final = 1 << 62
-COMPILING: Final = (
-    "compiling the laws of motion: some seconds, once until the laws, numba or the processor change"
-)
 IDLE_S: Final = 0.2
 """Longest wait for a client while time stands still."""
 ATTACH_S: Final = 30.0
@@ -80,7 +77,7 @@ class Bench:
             if note.severity is Severity.WARNING:
                 on_note(f"warning: {note}")
         self._on_note = on_note
-        native.prepare(lambda: on_note(COMPILING))
+        native.prepare(lambda: on_note(native.COMPILING))
         with ExitStack() as stack:
             self._closing = stack
             self._realtime = realtime

@@ -25,7 +25,7 @@ from hli_bench.laws.stride import exchange_in, exchange_out, stride
 Entry = Callable[..., Any]
 
 ENTRIES: Final[Mapping[Entry, int]] = {
-    stride: 4,
+    stride: 5,
     advance_machine: 1,
     exchange_in: 0,
     exchange_out: 0,
@@ -34,6 +34,8 @@ ENTRIES: Final[Mapping[Entry, int]] = {
     put_segment: 2,
 }
 """Laws that Python calls, and how many of their last parameters change from call to call; the others are bound."""
+COMPILING: Final = "compiling the laws of motion: some seconds, once until laws, numba or processor change"
+"""What to tell people who wait."""
 PLAIN: Final = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 """Laws stay the Python functions that they are."""
 _C_TYPES: Final[Mapping[Any, Any]] = {int: ctypes.c_int64, float: ctypes.c_double}

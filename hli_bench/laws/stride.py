@@ -71,10 +71,12 @@ def stride(
     cycles: int,
     phase: int,
     stop_to_act: int,
+    logged: int,
 ) -> int:
     """Run up to `cycles` cycles; cycle `cycle` is the first. Return cycles completed x PLACES + where it stopped.
 
     With `stop_to_act` the first cycle is left behind `sense`, so that the caller can decide before `act`.
+    `logged`: somebody reads the log.
     """
     for done in range(cycles):
         if phase == MACHINE:
@@ -102,7 +104,8 @@ def stride(
             if sense(axis, path, watch, history, cycle) or stop_to_act:
                 return done * PLACES + ACT
         act(axis, path, segment, leg, cycle_ns)
-        write_log(axis, log, cycle % LOG_CYCLES)
+        if logged:
+            write_log(axis, log, cycle % LOG_CYCLES)
         phase = MACHINE
         cycle += 1
         if edges[0] > edge.shape[0] // 2:

@@ -262,7 +262,7 @@ class Engine:
 
     def _stride(self, cycle: int, cycles: int, phase: int) -> tuple[int, int]:
         stop, self._decide = (self._decide, False) if phase != law.ACT else (False, self._decide)
-        done, where = divmod(self._law(cycle, cycles, phase, stop), law.PLACES)
+        done, where = divmod(self._law(cycle, cycles, phase, stop, bool(self.observers)), law.PLACES)
         if stop and where == law.SENSE:
             self._decide = True
         return done, where

@@ -98,7 +98,7 @@ def digest(cycles: int, per_stride: int) -> str:
     )
     cycle = 1
     while cycle <= cycles:
-        cycle += go(cycle, min(per_stride, cycles + 1 - cycle), MACHINE, 0) // PLACES
+        cycle += go(cycle, min(per_stride, cycles + 1 - cycle), MACHINE, 0, 1) // PLACES
     assert machine.edges[0] > 3
     rows = (
         kernel.axis,

@@ -68,6 +68,7 @@ def _put(place: Path, name: str, content: bytes) -> None:
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
+        Path(path).chmod(0o644)  # beside the laws it serves everybody who uses this installation
         Path(path).replace(place / name)
     except OSError:
         Path(path).unlink(missing_ok=True)

@@ -5,7 +5,7 @@ one in which control words change passes numbers too. Every other cycle hands re
 frames from them. All give the same bits.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final, Protocol
 
 from hli_bench.base.errors import BenchError
@@ -148,14 +148,6 @@ class Engine:
         self.kernel.take_frames(frames)
         self._tell_frames(0, frames)
         self.kernel.begin_start_up()
-
-    def run(self, until: Callable[[], bool], limit: int) -> bool:
-        """Step until a condition on the kernel holds or cycle `limit` is done; tell whether it held."""
-        while not until():
-            if self.cycle >= limit:
-                return False
-            self.step(limit)
-        return True
 
     def step(self, limit: int) -> None:
         """Run a stretch: to the next decision, PLC tick or `limit`, whichever comes first."""

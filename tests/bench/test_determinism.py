@@ -1,7 +1,12 @@
 """The same bits however the bench is stepped: strides, single cycles, frames; and run after run."""
 
 import hashlib
+import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -99,35 +104,19 @@ def by_strides(bench: Bench) -> None:
     """As the bench does it."""
 
 
+def in_steps(bench: Bench, cycles: Callable[[], int]) -> None:
+    """Let every step of the engine be no longer than so many cycles."""
+    engine, step = bench.engine, bench.engine.step
+    engine.step = lambda limit: step(min(limit, engine.cycle + cycles()))
+
+
 def cycle_by_cycle(bench: Bench) -> None:
-    engine = bench.engine
-
-    def run(until, limit):
-        while not until():
-            if engine.cycle >= limit:
-                return False
-            engine.step(engine.cycle + 1)
-        return True
-
-    engine.run = run
+    in_steps(bench, lambda: 1)
 
 
 def interrupted(seed: int) -> Drive:
     random = np.random.default_rng(seed)
-
-    def drive(bench: Bench) -> None:
-        engine = bench.engine
-
-        def run(until, limit):
-            while not until():
-                if engine.cycle >= limit:
-                    return False
-                engine.step(min(limit, engine.cycle + int(random.integers(1, 40))))
-            return True
-
-        engine.run = run
-
-    return drive
+    return lambda bench: in_steps(bench, lambda: int(random.integers(1, 40)))
 
 
 def through_frames(bench: Bench) -> None:
@@ -196,13 +185,19 @@ def test_program_does_something(trace, seed):
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_cycle_by_cycle_gives_the_bits_of_strides(trace, seed):
-    same(trace(by_strides, seed)[2], trace(cycle_by_cycle, seed)[2])
+    _, strides, wanted = trace(by_strides, seed, 50_000)
+    _, cycles, found = trace(cycle_by_cycle, seed, 50_000)
+    assert len(cycles.blocks) == len(cycles.log) > 5 * len(strides.blocks)
+    same(wanted, found)
 
 
 @pytest.mark.parametrize("seed", range(1, 7))
 def test_interrupted_anywhere_gives_the_bits_of_strides(trace, seed):
-    period_us = [1000, 2000, 7000, 50_000][seed % 4]
-    same(trace(by_strides, seed, period_us)[2], trace(interrupted(seed), seed, period_us)[2])
+    period_us = [2000, 7000, 20_000, 50_000][seed % 4]
+    _, strides, wanted = trace(by_strides, seed, period_us)
+    _, pieces, found = trace(interrupted(seed), seed, period_us)
+    assert len(pieces.blocks) > len(strides.blocks)
+    same(wanted, found)
 
 
 @pytest.mark.parametrize("seed", [3, 4])
@@ -248,3 +243,43 @@ def test_run_longer_than_the_history_is_the_same(trace):
     _, recorder, strides = trace(by_strides, 11, 50_000)
     same(strides, trace(interrupted(5), 11, 50_000)[2])
     assert len(recorder.log) > HISTORY_CYCLES
+
+
+WHOLE = """
+import hashlib, json, sys
+from hli_bench import Bench
+
+with Bench(sys.argv[1], json.loads(sys.argv[2]), plc=[]) as bench:
+    result = bench.run(sys.argv[3]).to_dict()
+    del result["wall_s"]
+    rows = bench.kernel.rows, bench.engine.link.rows
+    parts = [getattr(one, name).tobytes() for one in rows for name in one.__slots__]
+print(json.dumps(result, sort_keys=True), hashlib.sha256(b"".join(parts)).hexdigest())
+"""
+"""A whole bench; prints its result and a digest of every row."""
+
+
+def test_a_whole_bench_compiled_or_not_gives_the_same_bits(tmp_path):
+    """Homing over a cam, motion over corners, a measuring run: all that the laws do."""
+    machine = Path(__file__).parents[2] / "benchmarks" / "machines" / "three_axes"
+    settings = {
+        "axis.Z.kenngr.measure.signal": "DRIVE",
+        "axis.X.kenngr.abs_pos_gueltig": 0,
+        "axis.X.antr.reference_cam_signal": "STATUS_DIG_INPUTS",
+        "axis.X.input.home": "cam.X",
+        "axis.X.getriebe[0].vb_reflow": 80_000,
+        "plant.probe.Z.face_mm": 290.0,
+        "plant.probe.Z.material": "below",
+        "plant.probe.sigma_um": 0.7,
+        "plant.probe.bounce_us": 1500.0,
+    }
+    program = "%p\nN10 G74 X1\nN20 G90 G01 X10 Y5 Z295 F20000\nX11 Y4\nN30 G100 Z280 F2000\nN40 M30\n"
+    words = [sys.executable, "-c", WHOLE, str(machine), json.dumps(settings), program]
+
+    def said(disabled: str) -> str:
+        environment = {**os.environ, "NUMBA_DISABLE_JIT": disabled}
+        return subprocess.run(words, env=environment, capture_output=True, text=True, check=True).stdout
+
+    compiled = said("0")
+    assert json.loads(compiled.rsplit(" ", 1)[0])["status"] == "completed"
+    assert said("1") == compiled

@@ -223,10 +223,13 @@ def test_program_after_a_lag_error_is_monitored_again(make, errors):
 def test_reset_during_start_up_does_not_keep_the_drives_from_operation(make, recorder, cycles):
     bench = make()
     bench.engine.power_on()
-    bench.engine.run(lambda: False, cycles)
+    while bench.engine.cycle < cycles:
+        bench.engine.step(cycles)
     bench.reset()
+    while not bench.kernel.ready and bench.engine.cycle < 2000:
+        bench.engine.step(2000)
 
-    assert bench.engine.run(lambda: bench.kernel.ready, 2000)
+    assert bench.kernel.ready
     assert (bench.kernel.rows.axis["statusword"] & 0x6F == 0x27).all()
 
 

@@ -10,6 +10,7 @@ import pytest
 import hli_bench
 from hli_bench import Bench
 from hli_bench.kernel.position_controller import history
+from hli_bench.laws.rows import SEGMENTS
 
 X, Y, Z = 0, 1, 2
 FULL = 1000
@@ -445,3 +446,22 @@ def test_endless_loop_without_motion_can_be_ended(make):
     assert not texts.completed
     assert not texts.messages, "their place is 100 ms away"
     assert bench.run("%p\nN10 G01 X2 F6000\nN20 M30\n").completed
+
+
+def test_blocks_are_decoded_ahead_of_the_motion_and_no_further_than_the_look_ahead():
+    """Bounded memory however long a program is: what has been read is at most the segment ring ahead."""
+    read, ahead = [0], []
+
+    def lines():
+        for number in range(1, 2001):
+            read[0] = number
+            yield f'#MSG SYN["{number}"]' if number % 10 == 0 else f"G90 G01 X{number / 100:.2f} F6000"
+        yield "M30"
+
+    with Bench("demo", on_record=lambda record: ahead.append(read[0] - int(record.text)), plc=[]) as bench:
+        result = bench.run(lines())
+
+    assert result.completed
+    assert len(ahead) == 200
+    assert max(ahead) < 1.2 * SEGMENTS
+    assert min(ahead[:-8]) >= SEGMENTS // 2, "the path never waits for the decoder"

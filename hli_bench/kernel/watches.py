@@ -109,16 +109,9 @@ class Watches:
     def watch(self, condition: Condition) -> int:
         """Put a condition under watch and return its handle. Raises BenchError when no row is left."""
         handle = self._free()
-        row = self._row[handle]
-        row["axis"] = condition.axis
-        row["limit"] = condition.limit
-        row["window"] = condition.window
-        row["mask"] = condition.mask
-        row["value"] = condition.value
-        row["cycles"] = condition.cycles
-        row["count"] = 0
-        self._fired[handle] = 0
-        self._kind[handle] = condition.kind
+        one = condition
+        given = one.kind, one.axis, one.limit, one.window, one.mask, one.value, one.cycles
+        self._row[handle] = (*given, 0, 0)  # count and fired begin anew
         return handle
 
     def met(self, handle: int) -> bool:

@@ -3,6 +3,7 @@
 A new source is a new module with the functions of `Source`; `source` finds it by its name.
 """
 
+from functools import cache
 from typing import Protocol, cast
 
 from hli_bench.base.errors import InputError, NotEmulated
@@ -34,6 +35,7 @@ class Source(Protocol):
         """Switch the source off after the run."""
 
 
+@cache
 def source(signal: str) -> Source:
     """Return the source for a value of P-AXIS-00516. Raises NotEmulated for one that is not built."""
     try:

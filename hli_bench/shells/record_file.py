@@ -41,9 +41,10 @@ class RecordFile:
 
     def write(self, data: bytes | memoryview) -> int:
         """Write all of it."""
-        self._at += len(data)
+        size = memoryview(data).nbytes
+        self._at += size
         self._try(lambda: self._file.write(data))
-        return len(data)
+        return size
 
     def writelines(self, lines: Iterable[bytes]) -> None:
         """Write them one behind the other."""

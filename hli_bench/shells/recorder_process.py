@@ -28,8 +28,8 @@ class Replay:
         self._next: int | None = None
         self.sink: Sink = KINDS[what.kind](what, ring, _note)
 
-    def take(self, batch: Batch) -> None:
-        """Let the sink take a batch, and know which cycles are missing in front of it."""
+    def take(self, batch: Batch) -> bool:
+        """Let the sink take a batch, and know which cycles are missing in front of it; tell whether more will come."""
         if self._next is not None and batch.first > self._next:
             self.sink.gap(self._next, batch.first - self._next)
         rows = np.frombuffer(batch.rows, np.uint8).reshape(-1, self._ring.shape[1])
@@ -39,6 +39,7 @@ class Replay:
         if len(rows):
             self._ring[np.arange(batch.first, self._next) % LOG_CYCLES] = rows
             self.sink.cycles(batch.first, len(rows))
+        return len(rows) > 0
 
 
 def main(pipe: Pipe, arguments: Sequence[str]) -> None:
@@ -52,9 +53,8 @@ def main(pipe: Pipe, arguments: Sequence[str]) -> None:
         return
     pipe.send(b"")
     try:
-        while (batch := pickle.loads(pipe.receive())).rows:
-            replay.take(batch)
-        replay.take(batch)
+        while replay.take(pickle.loads(pipe.receive())):
+            pass
     except EOFError:
         replay.sink.break_off()
         return

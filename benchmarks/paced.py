@@ -7,9 +7,10 @@ and the median of it over all turns. A PLC task runs in every cycle; two axes mo
 
 import argparse
 import statistics
+import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, closing, contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,6 +19,7 @@ from hli_bench.bench import bench as bench_module
 from hli_bench.shells.pacing import RealPace
 from hli_bench.shells.processes import free_endpoint
 from hli_bench.shells.realtime import ask, frozen_garbage
+from hli_bench.shells.recorder import Recorder, What, record
 
 MACHINE = Path(__file__).parent / "machines" / "eight_axes"
 CYCLE_NS = 1_000_000
@@ -101,12 +103,34 @@ def paced(*, realtime: bool, processes: bool) -> Iterator[Take]:
     """A bench that moves two of its axes."""
     endpoint = free_endpoint() if processes else None
     with Bench(MACHINE, pace="real", processes=processes, zenoh=endpoint, realtime=realtime) as bench:
-        pace = Noted.newest
-        bench.start_up()
-        bench.kernel.start(TO_AND_FRO, "to_and_fro")
-        bench.engine.wake()
-        yield lambda cycles: measured(pace, lambda: bench.advance(cycles))
-        assert bench.kernel.channel.running
+        yield from moving(bench)
+
+
+@contextmanager
+def traced(*, realtime: bool) -> Iterator[Take]:
+    """The bench in one process, recorded as `run --trace` does."""
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        Bench(MACHINE, pace="real", realtime=realtime) as bench,
+        closing(recorded(bench, Path(folder) / "run.mcap")) as recorder,
+    ):
+        bench.engine.observers.append(recorder)
+        yield from moving(bench)
+
+
+def recorded(bench: Bench, path: Path) -> Recorder:
+    what = What("trace", path, bench.kernel.setup, bench.config.name)
+    return record(what, bench.kernel.rows.log, paced=True, on_note=print)
+
+
+def moving(bench: Bench) -> Iterator[Take]:
+    """Let it move two of its axes."""
+    pace = Noted.newest
+    bench.start_up()
+    bench.kernel.start(TO_AND_FRO, "to_and_fro")
+    bench.engine.wake()
+    yield lambda cycles: measured(pace, lambda: bench.advance(cycles))
+    assert bench.kernel.channel.running
 
 
 def measure(name: str, opened: AbstractContextManager[Take], arguments: argparse.Namespace) -> None:
@@ -134,7 +158,7 @@ def measure(name: str, opened: AbstractContextManager[Take], arguments: argparse
 
 
 def main() -> None:
-    """Measure the bench in one process and the bench of processes."""
+    """Measure the bench in one process, the same with a trace, and the bench of processes."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--turns", type=int, default=9)
     parser.add_argument("--cycles", type=int, default=1000, help="of each turn")
@@ -143,8 +167,10 @@ def main() -> None:
     print(f"8 axes, 1 ms, a PLC task each cycle; {arguments.turns} turns of {arguments.cycles} cycles each")
     # The bench makes its pace itself; here it makes one that keeps what it measures.
     bench_module.RealPace = Noted  # type: ignore[misc]
-    for name, processes in (("one process", False), ("processes and Zenoh, as with serve", True)):
-        measure(name, paced(realtime=arguments.realtime, processes=processes), arguments)
+    realtime = arguments.realtime
+    measure("one process", paced(realtime=realtime, processes=False), arguments)
+    measure("one process, with a trace", traced(realtime=realtime), arguments)
+    measure("processes and Zenoh, as with serve", paced(realtime=realtime, processes=True), arguments)
 
 
 if __name__ == "__main__":

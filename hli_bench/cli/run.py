@@ -5,17 +5,18 @@ import json
 import math
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from hli_bench.base.errors import InputError
+from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError
 from hli_bench.cli.options import BenchOptions, Commands, add_bench, bench_options, supplied_file
 
 if TYPE_CHECKING:
     from hli_bench.bench.bench import Bench
     from hli_bench.bench.result import Result
     from hli_bench.kernel.records import Emitted
+    from hli_bench.shells.recorder import Recorder
 
 RESULT_KEYS: Final = (
     "program",
@@ -34,6 +35,8 @@ PACED_KEYS: Final = ("late_cycles", "worst_lateness_us", "lateness_histogram")
 """What it also writes of a bench in real pace."""
 EXIT_STATUS: Final[Mapping[str, int]] = {"completed": 0, "error": 1, "aborted": 130}
 OUTPUTS: Final = ("result", "trace", "report", "can_log")
+RECORDED: Final = ("trace", "can_log")
+"""Those that are written while the program runs."""
 OF_AN_OWN_BENCH: Final = (
     "machine",
     "set",
@@ -97,13 +100,19 @@ def execute(arguments: argparse.Namespace) -> int:
     options = bench_options(arguments)
     for name in OUTPUTS:
         prepare(getattr(arguments, name), name)
-    result = _run(program, options, arguments)
-    finish(result.to_dict(), arguments.result)
+    failures: list[BenchError] = []
+    result = _run(program, options, arguments, failures)
+    with _collected(failures):
+        finish(result.to_dict(), arguments.result)
+    for failure in failures:
+        print(failure, file=sys.stderr)
     if result.late_cycles:
         print(f"{result.late_cycles} of {result.cycles} cycles were late", file=sys.stderr)
     if result.status == "aborted" and arguments.limit is not None and result.sim_s >= arguments.limit:
         print(f"--limit: not done after {arguments.limit:g} s of machine time", file=sys.stderr)
         return EXIT_STATUS["error"]
+    if failures and result.status == "completed":
+        return failures[0].exit_status
     return EXIT_STATUS[result.status]
 
 
@@ -124,11 +133,10 @@ def prepare(file: str | None, option: str) -> None:
 
 
 def finish(result: Mapping[str, Any], file: str | None) -> None:
-    """Write the result file and say on standard error how the run ended, and what the bench remarks."""
-    if file is not None:
-        keys = (*RESULT_KEYS, *(key for key in PACED_KEYS if key in result))
-        text = json.dumps({key: result[key] for key in keys}, indent=2, ensure_ascii=False)
-        Path(file).write_text(text + "\n", encoding="utf-8")
+    """Say on standard error how the run ended, and what the bench remarks; write the result file.
+
+    Raises EnvironmentLacks when it cannot be written.
+    """
     print(
         f"{result['program']}: {result['status']}, {result['sim_s']:.3f} s of machine time "
         f"in {result['wall_s']:.1f} s, {result['cycles']} cycles",
@@ -136,13 +144,28 @@ def finish(result: Mapping[str, Any], file: str | None) -> None:
     )
     for note in result["notes"]:
         print(f"note: {note}", file=sys.stderr)
+    if file is not None:
+        keys = (*RESULT_KEYS, *(key for key in PACED_KEYS if key in result))
+        _write(file, json.dumps({key: result[key] for key in keys}, indent=2, ensure_ascii=False) + "\n")
+
+
+def _write(file: str, text: str) -> None:
+    try:
+        Path(file).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise EnvironmentLacks(f"{file}: cannot be written: {error.strerror}") from error
 
 
 # -- a bench of its own -----------------------------------------------------------------------------------
 
 
-def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) -> "Result":
-    """Build the bench, run the program with its recorders; Ctrl-C gives an aborted result."""
+def _run(
+    program: Path, options: BenchOptions, arguments: argparse.Namespace, failures: list[BenchError]
+) -> "Result":
+    """Build the bench, run the program with its recorders; Ctrl-C gives an aborted result.
+
+    What could not be written is added to `failures`: the result is there all the same.
+    """
     from hli_bench.bench.bench import Bench
 
     with Bench(
@@ -156,7 +179,7 @@ def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) ->
         **_buses(options),
     ) as bench:
         report = None if arguments.report is None else _reporter(bench)
-        with _recorders(bench, options, arguments):
+        with _recorders(bench, options, arguments, failures):
             bench.start_up()
             try:
                 result = bench.run(program, limit_s=arguments.limit)
@@ -165,7 +188,8 @@ def _run(program: Path, options: BenchOptions, arguments: argparse.Namespace) ->
                     raise
                 result = bench.interrupted
         if report is not None:
-            report(result, arguments.report)
+            with _collected(failures):
+                report(result, arguments.report)
         return result
 
 
@@ -191,21 +215,36 @@ def _print_record(record: "Emitted") -> None:
 
 
 @contextmanager
-def _recorders(bench: "Bench", options: BenchOptions, arguments: argparse.Namespace) -> Iterator[None]:
+def _recorders(
+    bench: "Bench", options: BenchOptions, arguments: argparse.Namespace, failures: list[BenchError]
+) -> Iterator[None]:
     """Attach what writes trace and CAN log while the program runs."""
-    setup, log = bench.kernel.setup, bench.kernel.rows.log
-    with ExitStack() as open_files:
-        if arguments.trace is not None:
-            from hli_bench.shells.trace_file import TraceFile
+    with ExitStack() as closing:
+        for kind in RECORDED:
+            file = getattr(arguments, kind)
+            if file is None:
+                continue
+            from hli_bench.shells.recorder import What, record
 
-            trace = TraceFile(Path(arguments.trace), setup, log, bench.config.name, options.settings)
-            bench.engine.observers.append(open_files.enter_context(trace))
-        if arguments.can_log is not None:
-            from hli_bench.shells.candump import CandumpLog
-
-            candump = CandumpLog(Path(arguments.can_log), setup, log)
-            bench.engine.observers.append(open_files.enter_context(closing(candump)))
+            what = What(kind, Path(file), bench.kernel.setup, bench.config.name, options.settings)
+            recorder = record(what, bench.kernel.rows.log, paced=options.pace == "real", on_note=_print_note)
+            bench.engine.observers.append(recorder)
+            closing.callback(_close, recorder, failures)
         yield
+
+
+def _close(recorder: "Recorder", failures: list[BenchError]) -> None:
+    with _collected(failures):
+        recorder.close()
+
+
+@contextmanager
+def _collected(failures: list[BenchError]) -> Iterator[None]:
+    """Add what goes wrong to `failures`."""
+    try:
+        yield
+    except BenchError as error:
+        failures.append(error)
 
 
 def _reporter(bench: "Bench") -> Callable[["Result", str], None]:
@@ -219,7 +258,7 @@ def _reporter(bench: "Bench") -> Callable[["Result", str], None]:
     def write(result: "Result", file: str) -> None:
         recording.plcs = {plc.name: plc.period_cycles * bench.config.cycle_ns for plc in bench.engine.plcs}
         page = report_html(recording, result.to_dict(), bench.config.name)
-        Path(file).write_text(page, encoding="utf-8")
+        _write(file, page)
 
     return write
 

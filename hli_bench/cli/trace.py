@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hli_bench.shells.trace_file import AxesBlock, Stretch, TraceEvent, TraceMeta, TraceReader
     from hli_bench.wire.can import CanFrame
 
-CHANNELS: Final = ("meta", "axes", "can", "edges", "plc", "refused", "cnc")
+CHANNELS: Final = ("meta", "axes", "can", "edges", "plc", "refused", "cnc", "gaps")
 SUFFIXES: Final[Mapping[str, str]] = {
     "csv": ".csv",
     "parquet": ".parquet",
@@ -214,6 +214,8 @@ def _event_texts(event: "TraceEvent", meta: "TraceMeta", selection: Selection) -
             yield f"{value['plc']}: {path} = {_level(written)}"
     elif event.topic == "refused":
         yield f"{value['writer']}: {value['path']}: {value['reason']}"
+    elif event.topic == "gaps":
+        yield f"{value['count']} cycles are missing, from {value['first']} on"
     else:
         yield from _record_texts(value, meta, selection)
 

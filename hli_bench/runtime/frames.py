@@ -214,7 +214,9 @@ class CycleBuffer:
     def take(self, count: int) -> Rows:
         """Return the oldest cycles, shape (cycles, axes), and forget them."""
         count = min(count, self.count)
-        taken: Rows = self._rows[:count].copy()
+        taken: Rows = (
+            self._bytes[:count].copy().view(self._rows.dtype)
+        )  # field by field takes 10 times as long
         self._bytes[: self.count - count] = self._bytes[count : self.count].copy()
         self.first += count
         self.count -= count

@@ -27,6 +27,8 @@ from hli_bench.wire.signals import Edge
 
 SAMPLES: Final = 20_000
 """Samples of a curve; one more halves their number (decided here)."""
+CONDENSE: Final = 128
+"""Cycles that wait to become samples, at least: many together are quicker, a few hold no paced cycle (decided here)."""
 EVENTS: Final = 20_000
 """Edges, writes and records that are kept, the newest of each (decided here)."""
 WINDOWS: Final = 64
@@ -123,16 +125,25 @@ class Window:
     last: int
 
 
+_Piece = tuple[NDArray[np.int64], Rows]
+"""Consecutive samples: the first cycle of each, and their values."""
+
+
 @dataclass(slots=True)
 class _Samples:
-    """Curves of all axes, a sample every `interval` cycles: a power of two that grows with the run."""
+    """Curves of all axes, a sample every `interval` cycles: a power of two that grows with the run.
+
+    When it grows the samples so far are `stale`; they are made coarser a piece at a time, as cycles come, because a
+    paced bench has no time for all of them at once.
+    """
 
     axes: int
     limit: int
     interval: int = 1
-    numbers: list[NDArray[np.int64]] = field(default_factory=list)
-    values: list[Rows] = field(default_factory=list)
-    count: int = 0
+    first: int = 0
+    old: list[_Piece] = field(default_factory=list)
+    stale: deque[_Piece] = field(default_factory=deque)
+    new: list[_Piece] = field(default_factory=list)
 
     def add(self, first: int, rows: Rows) -> None:
         """Take cycles."""
@@ -140,28 +151,33 @@ class _Samples:
         for name in ("command", "actual", "lag"):
             samples[f"{name}_low"] = samples[f"{name}_high"] = rows[name]
         unknown = rows["statusword"] == 0
-        for name in _SAMPLE.names or ():
-            samples[name][unknown] = np.nan
-        self._put(np.arange(first, first + len(rows), dtype=np.int64), samples)
-        while self.count > self.limit:
-            numbers, values = self.take()
+        if unknown.any():
+            for name in _SAMPLE.names or ():
+                samples[name][unknown] = np.nan
+        self.first = self.first or first
+        while (first + len(rows) - 1) // self.interval - self.first // self.interval >= self.limit:
             self.interval *= 2
-            self.numbers, self.values, self.count = [], [], 0
-            self._put(numbers, values)
+            self.stale = deque((*self.old, *self.stale, *self.new))
+            self.old, self.new = [], []
+        self._join(self.new, (np.arange(first, first + len(rows), dtype=np.int64), samples))
+        if self.stale:
+            self._join(self.old, self.stale.popleft())
 
-    def take(self) -> tuple[NDArray[np.int64], Rows]:
-        """Return cycle numbers and samples, a sample that two blocks share in one piece."""
-        if not self.numbers:
-            return np.empty(0, np.int64), np.empty((0, self.axes), _SAMPLE)
-        return self._merged(np.concatenate(self.numbers), np.concatenate(self.values))
+    def take(self) -> _Piece:
+        """Return cycle numbers and samples."""
+        nothing = (np.empty(0, np.int64), np.empty((0, self.axes), _SAMPLE))
+        return self._merged([nothing, *self.old, *self.stale, *self.new])
 
-    def _put(self, cycles: NDArray[np.int64], samples: Rows) -> None:
-        numbers, values = self._merged(cycles, samples)
-        self.numbers.append(numbers)
-        self.values.append(values)
-        self.count += len(numbers)
+    def _join(self, pieces: list[_Piece], piece: _Piece) -> None:
+        """Put a piece behind others, together with the last one when that is small."""
+        small = pieces and len(pieces[-1][0]) < CONDENSE
+        pieces.append(self._merged([pieces.pop(), piece] if small else [piece]))
 
-    def _merged(self, cycles: NDArray[np.int64], samples: Rows) -> tuple[NDArray[np.int64], Rows]:
+    def _merged(self, pieces: Sequence[_Piece]) -> _Piece:
+        """Return pieces as one with a sample every `interval` cycles."""
+        cycles, samples = (np.concatenate(parts) for parts in zip(*pieces, strict=True))
+        if self.interval == 1:
+            return cycles, samples
         starts = np.flatnonzero(np.diff(cycles // self.interval, prepend=-1))
         merged: Any = np.empty((len(starts), self.axes), _SAMPLE)
         for name in _SAMPLE.names or ():
@@ -207,7 +223,7 @@ class Recording:
         self.first = self.first or first
         self.last = first + count - 1
         self._buffer.add(first, count)
-        if self._buffer.count >= LOG_CYCLES:
+        if self._buffer.count >= CONDENSE:
             self._condense()
         for window in self._open:
             rows = self._cycles(window.first + len(window.rows), min(self.last, window.last))

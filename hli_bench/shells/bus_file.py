@@ -4,9 +4,9 @@ What a frame looks like in the file is a form: `candump` or `pcap`. Times are th
 time.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import BinaryIO, Final, Protocol
+from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,11 +51,21 @@ class _Template:
     data: tuple[int, ...]
 
 
+class Out(Protocol):
+    """What frames are written to."""
+
+    def write(self, data: bytes | memoryview, /) -> int:
+        """Write all of it."""
+
+    def writelines(self, lines: Iterable[bytes], /) -> None:
+        """Write them one behind the other."""
+
+
 class BusFile:
     """Writes cycles and the frames beside them in bus order; `nodes` in row order."""
 
     def __init__(
-        self, file: BinaryIO, form: Form, nodes: Sequence[NodeId], cycle_ns: int, dc_epoch_ns: int
+        self, file: Out, form: Form, nodes: Sequence[NodeId], cycle_ns: int, dc_epoch_ns: int
     ) -> None:
         self._file = file
         self._form = form

@@ -17,6 +17,7 @@ from hli_bench.laws.rows import LOG_CYCLES, Rows
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.frames import CycleBuffer
 from hli_bench.shells.bus_file import BusFile
+from hli_bench.shells.record_file import OnNote, RecordFile, uninterrupted
 from hli_bench.wire.can import CanFrame
 from hli_bench.wire.hli import Commands
 from hli_bench.wire.signals import Edge
@@ -70,13 +71,13 @@ class Candump:
 class CandumpLog:
     """Observer that writes every frame of the bus to a file."""
 
-    def __init__(self, path: Path, setup: KernelSetup, log: Rows, interface: str = INTERFACE) -> None:
-        """`log` is the kernel's ring. Raises OSError when the file cannot be written."""
+    def __init__(self, path: Path, setup: KernelSetup, log: Rows, on_note: OnNote = lambda _: None) -> None:
+        """`log` is the kernel's ring. Raises InputError when the file cannot be written."""
         nodes = [axis.node for axis in setup.axes]
         self._buffer = CycleBuffer(log)
         self._others: dict[int, list[CanFrame]] = {}
-        self._file = path.open("wb")
-        self._bus = BusFile(self._file, Candump(interface), nodes, setup.cycle_ns, setup.dc_epoch_ns)
+        self._file = RecordFile(path, on_note)
+        self._bus = BusFile(self._file, Candump(), nodes, setup.cycle_ns, setup.dc_epoch_ns)
 
     def cycles(self, first: int, count: int) -> None:
         """Take cycles of the log ring; written when enough of them wait."""
@@ -100,18 +101,30 @@ class CandumpLog:
     def refused(self, cycle: int, refusals: Sequence[Refusal]) -> None:
         """The HLI is not on the bus."""
 
+    def gap(self, first: int, count: int) -> None:
+        """Cycles were lost: their lines are missing, the stamps show it."""
+        self._write()
+
     def close(self) -> None:
-        """Write what waits and close the file. May be called again."""
+        """Write what waits and close the file. May be called again.
+
+        Raises EnvironmentLacks when not all of it could be written.
+        """
         if not self._file.closed:
             self._write()
             self._file.close()
 
+    break_off = close
+    """A log has no end of its own."""
+
     def _write(self) -> None:
         """Write all waiting cycles with what passed beside them."""
-        first = self._buffer.first
-        rows = self._buffer.take(self._buffer.count)
-        end = first + len(rows)
-        due = {cycle: frames for cycle, frames in self._others.items() if cycle < end or not len(rows)}
-        for cycle in due:
-            del self._others[cycle]
-        self._bus.write(first, rows, due)
+        with uninterrupted():
+            first = self._buffer.first
+            rows = self._buffer.take(self._buffer.count)
+            end = first + len(rows)
+            due = {cycle: frames for cycle, frames in self._others.items() if cycle < end or not len(rows)}
+            for cycle in due:
+                del self._others[cycle]
+            self._bus.write(first, rows, due)
+            self._file.flush()

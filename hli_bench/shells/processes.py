@@ -77,6 +77,11 @@ class PlcProcess:
             raise BenchError(f"the PLC process of {self._script} has ended with status {status}")
 
 
+def framed(message: bytes) -> bytes:
+    """Return a message as it passes a pipe."""
+    return _LENGTH.pack(len(message)) + message
+
+
 class Pipe:
     """Messages with a length in front, over one end of a socket pair. It waits for ever unless `limit` was called."""
 
@@ -87,14 +92,28 @@ class Pipe:
     def send(self, message: bytes) -> None:
         """Send one message. Raises EnvironmentLacks when the other side has gone, TimeoutError when it is stuck."""
         try:
-            self._end.sendall(_LENGTH.pack(len(message)) + message)
+            self._end.sendall(framed(message))
+        except TimeoutError:
+            raise
+        except OSError as error:
+            raise EnvironmentLacks("a process of the bench has gone") from error
+
+    def send_part(self, part: memoryview) -> int:
+        """Send some of what `framed` gave, return how many bytes; 0 when the limit is 0 and nothing goes.
+
+        Raises EnvironmentLacks when the other side has gone, TimeoutError when it is stuck.
+        """
+        try:
+            return self._end.send(part)
+        except BlockingIOError:
+            return 0
         except TimeoutError:
             raise
         except OSError as error:
             raise EnvironmentLacks("a process of the bench has gone") from error
 
     def limit(self, seconds: float) -> None:
-        """Wait at most so long from now on; after a TimeoutError the pipe is of no use any more."""
+        """Wait at most so long from now on, 0: not at all; after a TimeoutError the pipe is of no use any more."""
         self._end.settimeout(seconds)
 
     def receive(self) -> bytes:

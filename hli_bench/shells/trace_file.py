@@ -1,20 +1,21 @@
 """A run as an MCAP file, written while it runs: numbers of all axes in blocks, events between them.
 
 Topics: `meta` (one message), `axes` (blocks of cycles as the log holds them), `can` (frames that are no
-telegrams; the telegrams follow from `axes`), `edges`, `plc`, `refused`, `cnc`. Times are bench time in ns.
+telegrams; the telegrams follow from `axes`), `edges`, `plc`, `refused`, `cnc`; `gaps` where cycles are missing.
+Times are bench time in ns.
 A block begins at a multiple of BLOCK_CYCLES and what happened in it stands behind it in order of time, so
 equal runs give equal bytes however they were cut into strides. Decision 0011.
 """
 
 import json
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from struct import Struct
 from struct import error as StructError  # noqa: N812 an exception class in lower case
 from types import TracebackType
-from typing import Any, BinaryIO, Final, Self
+from typing import Any, BinaryIO, Final, Self, cast
 
 import numpy as np
 from mcap.exceptions import EndOfFile, McapError
@@ -31,6 +32,7 @@ from hli_bench.kernel.setup import KernelSetup
 from hli_bench.laws.rows import LOG, LOG_CYCLES, Rows
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.frames import CycleBuffer
+from hli_bench.shells.record_file import OnNote, RecordFile, uninterrupted
 from hli_bench.wire.can import CanFrame
 from hli_bench.wire.hli import Commands
 from hli_bench.wire.signals import Edge
@@ -42,6 +44,8 @@ CHUNK_BYTES: Final = 1 << 20
 WRITER: Final = "hli-bench"
 
 TOPICS: Final = ("meta", "axes", "can", "edges", "plc", "refused", "cnc")
+GAPS: Final = "gaps"
+"""A topic only of files in which cycles are missing."""
 
 _BLOCK: Final = Struct("<QII")
 _CAN: Final = Struct("<HBB")
@@ -79,6 +83,7 @@ _SCHEMAS: Final[Mapping[str, object]] = {
     "plc": _object(plc=_TEXT, cycle=_WHOLE, writes={"type": "array"}),
     "refused": _object(path=_TEXT, reason=_TEXT, writer=_TEXT),
     "cnc": _object(kind=_TEXT),
+    GAPS: _object(first=_WHOLE, count=_WHOLE),
 }
 
 
@@ -138,15 +143,19 @@ class TraceFile:
         log: Rows,
         machine: str,
         overrides: Mapping[str, object] | None = None,
+        on_note: OnNote = lambda _: None,
     ) -> None:
-        """`log` is the kernel's ring. Raises OSError when the file cannot be written."""
+        """`log` is the kernel's ring. Raises InputError when the file cannot be written."""
         self._cycle_ns = setup.cycle_ns
         self._axes = len(setup.axes)
         self._buffer = CycleBuffer(log, LOG_CYCLES + BLOCK_CYCLES)
         self._waiting: list[tuple[Ns, int, bytes]] = []
-        self._file = path.open("wb")
-        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._file = RecordFile(path, on_note)
+        self._writer = Writer(
+            cast("BinaryIO", self._file), chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD
+        )
         self._writer.start(profile="", library=WRITER)
+        self._channels: dict[str, int] = {}
         for topic in TOPICS:
             self._register(topic)
         axes = [
@@ -161,7 +170,7 @@ class TraceFile:
             "axes": axes,
             "overrides": {key: str(value) for key, value in (overrides or {}).items()},
         }
-        self._put(Ns(0), _id("meta"), _json(meta))
+        self._put(Ns(0), self._channels["meta"], _json(meta))
 
     def __enter__(self) -> Self:
         return self
@@ -173,7 +182,9 @@ class TraceFile:
 
     def cycles(self, first: int, count: int) -> None:
         """Write the blocks that are complete with their events, then take new cycles of the log ring."""
-        self._write_blocks()
+        if self._buffer.count >= self._to_block_end():
+            with uninterrupted():
+                self._write_blocks()
         self._buffer.add(first, count)
 
     def frames(self, cycle: int, frames: Sequence[CanFrame]) -> None:
@@ -204,31 +215,56 @@ class TraceFile:
         for refusal in refusals:
             self._event(Ns(cycle * self._cycle_ns), "refused", _json(asdict(refusal)))
 
+    def gap(self, first: int, count: int) -> None:
+        """Note that cycles were lost with all that happened in them; the next ones begin a block."""
+        with uninterrupted():
+            self._write_rest()
+            if GAPS not in self._channels:
+                self._register(GAPS)
+            self._event(Ns(first * self._cycle_ns), GAPS, _json({"first": first, "count": count}))
+            self._write_events(None)
+
     def close(self) -> None:
-        """Write what waits and the index, close the file. May be called again."""
+        """Write what waits and the index, close the file. May be called again.
+
+        Raises EnvironmentLacks when not all of it could be written.
+        """
+        self._end(self._writer.finish)
+
+    def break_off(self) -> None:
+        """Write what waits and close the file, but not as a recording that was ended."""
+        self._end(self._writer.flush)
+
+    def _end(self, ending: Callable[[], None]) -> None:
         if self._file.closed:
             return
+        with uninterrupted():
+            self._write_rest()
+            ending()
+            self._file.close()
+
+    def _write_rest(self) -> None:
         self._write_blocks()
         if self._buffer.count:
             self._write_block(self._buffer.count)
         self._write_events(None)
-        self._writer.finish()  # type: ignore[no-untyped-call]  # mcap leaves it bare
-        self._file.close()
+
+    def _to_block_end(self) -> int:
+        """Return how many cycles the block has that the buffer begins with."""
+        return BLOCK_CYCLES - self._buffer.first % BLOCK_CYCLES
 
     def _write_blocks(self) -> None:
         """Write complete blocks. Their last events came after the cycles, so this waits for the next call."""
-        while self._buffer.count:
-            cycles = BLOCK_CYCLES - self._buffer.first % BLOCK_CYCLES
-            if self._buffer.count < cycles:
-                return
+        while self._buffer.count >= (cycles := self._to_block_end()):
             self._write_block(cycles)
 
     def _write_block(self, cycles: int) -> None:
         first = self._buffer.first
         rows = np.ascontiguousarray(self._buffer.take(cycles), LOG.newbyteorder("<"))
         head = _BLOCK.pack(first, len(rows), self._axes)
-        self._put(Ns(first * self._cycle_ns), _id("axes"), head + rows.tobytes())
+        self._put(Ns(first * self._cycle_ns), self._channels["axes"], head + rows.tobytes())
         self._write_events(Ns((first + cycles - 1) * self._cycle_ns))
+        self._file.flush()
 
     def _write_events(self, until: Ns | None) -> None:
         """Write waiting events up to an instant (all of them for None), in order of time and topic."""
@@ -238,7 +274,7 @@ class TraceFile:
             self._put(at_ns, channel, data)
 
     def _event(self, at_ns: Ns, topic: str, data: bytes) -> None:
-        self._waiting.append((at_ns, _id(topic), data))
+        self._waiting.append((at_ns, self._channels[topic], data))
 
     def _put(self, at_ns: Ns, channel: int, data: bytes) -> None:
         self._writer.add_message(channel_id=channel, log_time=at_ns, publish_time=at_ns, data=data)
@@ -247,12 +283,7 @@ class TraceFile:
         packed = topic in ("axes", "can")
         encoding = _PACKED if packed else "jsonschema"
         schema = self._writer.register_schema(f"{WRITER}/{topic}", encoding, _json(_SCHEMAS[topic]))
-        self._writer.register_channel(topic, _PACKED if packed else "json", schema)
-
-
-def _id(topic: str) -> int:
-    """Return the channel of a topic: the writer numbers them from 1 in the order of registration."""
-    return TOPICS.index(topic) + 1
+        self._channels[topic] = self._writer.register_channel(topic, _PACKED if packed else "json", schema)
 
 
 def _json(value: object) -> bytes:

@@ -13,7 +13,7 @@ import pytest
 
 if TYPE_CHECKING:
     from hli_bench.bench.bench import Bench
-    from hli_bench.shells.trace_file import TraceFile
+    from hli_bench.shells.recorder import Recorder
 
 TRACES = pytest.StashKey["Traces"]()
 FAILED = pytest.StashKey[bool]()
@@ -35,19 +35,21 @@ class Traces:
         self._folder = folder
         self._prefix = prefix
         self._closing = ExitStack()
-        self._open: list[TraceFile] = []
+        self._open: list[Recorder] = []
         self.files: list[Path] = []
 
     def bench(self, machine: str | Path = "demo", settings: Any = None, **options: Any) -> "Bench":
         """Return a bench as `Bench(machine, settings, **options)` does, recorded and closed at the end."""
         from hli_bench.bench.bench import Bench
-        from hli_bench.shells.trace_file import TraceFile
+        from hli_bench.shells.recorder import What, record
 
         made = self._closing.enter_context(Bench(machine, settings, **options))
         self._folder.mkdir(parents=True, exist_ok=True)
         file = self._folder / f"{self._prefix}{len(self.files)}.mcap"
-        trace = TraceFile(file, made.kernel.setup, made.kernel.rows.log, made.config.name, settings)
-        made.engine.observers.append(self._closing.enter_context(trace))
+        what = What("trace", file, made.kernel.setup, made.config.name, settings or {})
+        trace = record(what, made.kernel.rows.log, paced=options.get("pace") == "real")
+        self._closing.callback(trace.close)
+        made.engine.observers.append(trace)
         self._open.append(trace)
         self.files.append(file)
         return made

@@ -1,5 +1,6 @@
 """What a recording keeps of a run, and that it stays small."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from hli_bench.bench.bench import Bench
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.records import MeasuredValue
 from hli_bench.laws.rows import LOG_CYCLES
-from hli_bench.runtime.recording import InputTap, Recording, input_taps
+from hli_bench.runtime.recording import CONDENSE, InputTap, Recording, _Samples, input_taps
 from hli_bench.wire.signals import Edge
 
 SETTINGS = {
@@ -115,6 +116,22 @@ def test_samples_span_their_cycles_wherever_blocks_ended(made: Made) -> None:
     for at_ns, low, high in zip(curve.at_ns, curve.actual_low, curve.actual_high, strict=True):
         inside = values[cycles // interval == at_ns // MS // interval]
         assert (low, high) == (inside.min() / 1e4, inside.max() / 1e4)
+
+
+def test_no_cycle_makes_many_samples_coarser(made: Made, monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[int] = []
+    merged = _Samples._merged
+
+    def counted(samples: _Samples, pieces: Sequence[Any]) -> Any:
+        taken.append(sum(len(numbers) for numbers, _ in pieces))
+        return merged(samples, pieces)
+
+    monkeypatch.setattr(_Samples, "_merged", counted)
+    for _ in range(20_000):
+        made.feed(np.zeros(1))
+    assert made.recording._samples.interval == 32
+    assert max(taken) <= 2 * CONDENSE
+    assert len(made.recording.curve("X").at_ns) == 20_000 // 32 + 1
 
 
 def test_a_move_within_one_sample_is_a_move(made: Made) -> None:

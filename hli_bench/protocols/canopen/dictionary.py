@@ -1,7 +1,7 @@
 """The values behind an object dictionary: typed store, access rules, hooks, what is kept over a reset."""
 
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Mapping
+from functools import lru_cache, partial
 
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.datatypes import DataType, Value, pack, size_of, unpack
@@ -11,6 +11,8 @@ ReadHook = Callable[[], Value]
 """Gives the present value of an object that lives elsewhere."""
 WriteHook = Callable[[Value], None]
 """Is asked before a value is stored and may refuse it with SdoAbort."""
+RecordHook = Callable[[int, Value], None]
+"""The same for all sub-indices of an object."""
 
 COMMUNICATION = range(0x1000, 0x2000)
 """Indices of the communication profile area (reset by NMT reset communication)."""
@@ -38,32 +40,52 @@ class _Getters(dict[tuple[int, int], ReadHook]):
 class ObjectValues:
     """Values of one node. `upload`/`download` are the bus side, `get`/`put` the device's own side."""
 
-    __slots__ = ("_defaults", "_values", "_write_hooks", "description", "getters", "node_id")
+    __slots__ = (
+        "_defaults",
+        "_entries",
+        "_record_hooks",
+        "_values",
+        "_write_hooks",
+        "description",
+        "getters",
+        "node_id",
+    )
 
     def __init__(self, description: ObjectDictionary, node_id: int) -> None:
         self.description = description
         self.node_id = node_id
+        self._entries = description.entries
         self._defaults = self._factory()
         self._values = dict(self._defaults)
         self.getters: dict[tuple[int, int], ReadHook] = _Getters(self._values)
         """How each object is read; a dictionary of its own so that a PDO packs without detours."""
         self._write_hooks: dict[tuple[int, int], WriteHook] = {}
+        self._record_hooks: dict[int, RecordHook] = {}
 
     def on_read(self, index: int, subindex: int, hook: ReadHook) -> None:
         """Let `hook` answer reads of an object from now on."""
-        self.getters[self._entry(index, subindex).index, subindex] = hook
+        self._entry(index, subindex)
+        self.getters[index, subindex] = hook
 
     def on_write(self, index: int, subindex: int, hook: WriteHook) -> None:
         """Let `hook` check and follow writes from the bus (SDO and RPDO) to an object."""
-        self._write_hooks[self._entry(index, subindex).index, subindex] = hook
+        self._entry(index, subindex)
+        self._write_hooks[index, subindex] = hook
+
+    def on_write_record(self, index: int, hook: RecordHook) -> None:
+        """Let `hook` check and follow writes from the bus to any sub-index of an object."""
+        self._entry(index, 0)
+        self._record_hooks[index] = hook
 
     def get(self, index: int, subindex: int = 0) -> Value:
         """Return the present value. Raises SdoAbort when there is no such object."""
+        hook = self.getters.get((index, subindex))
+        if hook is not None:
+            return hook()
         try:
-            getter = self.getters[index, subindex]
+            return self._values[index, subindex]
         except KeyError:
             raise self._missing(index) from None
-        return getter()
 
     def number(self, index: int, subindex: int = 0) -> int:
         """Return the present value of an integer object. Raises TypeError for strings and domains."""
@@ -86,7 +108,7 @@ class ObjectValues:
 
     def has(self, index: int, subindex: int = 0) -> bool:
         """Whether the object exists."""
-        return (index, subindex) in self.description
+        return (index, subindex) in self._entries
 
     def upload(self, index: int, subindex: int) -> bytes:
         """Return an object's bytes for an SDO upload. Raises SdoAbort."""
@@ -114,10 +136,13 @@ class ObjectValues:
         """Store a value from the bus (SDO or RPDO) after limits and hook agreed. Raises SdoAbort."""
         if isinstance(value, int):
             _check_limits(entry, value)
-        hook = self._write_hooks.get((entry.index, entry.subindex))
+        address = entry.index, entry.subindex
+        hook = self._write_hooks.get(address)
         if hook is not None:
             hook(value)
-        self._values[entry.index, entry.subindex] = value
+        elif entry.index in self._record_hooks:
+            self._record_hooks[entry.index](entry.subindex, value)
+        self._values[address] = value
 
     def entry(self, index: int, subindex: int) -> Entry:
         """Return the description of an object. Raises SdoAbort when there is none."""
@@ -147,17 +172,23 @@ class ObjectValues:
         self._values.update(self._defaults)
 
     def _factory(self) -> dict[tuple[int, int], Value]:
-        return {(e.index, e.subindex): e.default_for(self.node_id) for e in self.description}
+        return dict(_factory(self.description, self.node_id))
 
     def _entry(self, index: int, subindex: int) -> Entry:
         try:
-            return self.description[index, subindex]
+            return self._entries[index, subindex]
         except KeyError:
             raise self._missing(index) from None
 
     def _missing(self, index: int) -> SdoAbort:
         known = self.description.has_object(index)
         return SdoAbort(AbortCode.NO_SUBINDEX if known else AbortCode.NO_OBJECT)
+
+
+@lru_cache(maxsize=256)
+def _factory(description: ObjectDictionary, node_id: int) -> Mapping[tuple[int, int], Value]:
+    """Return the values of a node as its EDS gives them."""
+    return {address: entry.default_for(node_id) for address, entry in description.entries.items()}
 
 
 def _check_length(size: int, expected: int) -> None:

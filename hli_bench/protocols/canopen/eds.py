@@ -82,11 +82,12 @@ _ZERO: Final[Mapping[DataType, Value]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ObjectDictionary:
     """All entries of an EDS, in the order of index and sub-index, and the names of its objects.
 
-    `node_id` is the one a DCF commissions, else None.
+    `node_id` is the one a DCF commissions, else None. One is made for one text, and is the same only as itself, so
+    that what follows from it is worked out once for all nodes of its kind.
     """
 
     entries: Mapping[tuple[int, int], Entry]

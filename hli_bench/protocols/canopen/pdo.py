@@ -3,6 +3,8 @@
 import struct
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import IntEnum
+from functools import lru_cache
 from typing import Final
 
 from hli_bench.base.errors import InputError
@@ -10,7 +12,7 @@ from hli_bench.base.time import NS_PER_MS, NS_PER_US, Ns
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.datatypes import STRUCT_CODES, DataType, Value, integer_range, size_of
 from hli_bench.protocols.canopen.dictionary import ObjectValues
-from hli_bench.protocols.canopen.eds import Entry
+from hli_bench.protocols.canopen.eds import Entry, ObjectDictionary
 from hli_bench.wire.can import CanFrame
 
 RPDO_COMMUNICATION: Final = range(0x1400, 0x1600)
@@ -30,7 +32,16 @@ SYNCHRONOUS: Final = range(241)
 ON_EVENT: Final = (254, 255)
 _INHIBIT_NS: Final = 100 * NS_PER_US
 
-_COB_ID, _TYPE, _INHIBIT, _EVENT_TIMER = 1, 2, 3, 5
+
+class _Parameter(IntEnum):
+    """Sub-indices of the communication parameter."""
+
+    COB_ID = 1
+    TYPE = 2
+    INHIBIT = 3
+    EVENT_TIMER = 5
+
+
 _RESTRICTED: Final = (
     range(0x081),
     range(0x101, 0x181),
@@ -63,7 +74,8 @@ class PdoPlan:
         return self.codec.unpack_from(data)
 
 
-def make_plan(values: ObjectValues, mapping: tuple[int, ...], *, sending: bool) -> PdoPlan:
+@lru_cache(maxsize=1024)
+def make_plan(description: ObjectDictionary, mapping: tuple[int, ...], *, sending: bool) -> PdoPlan:
     """Return the plan of mapping entries (index<<16 | subindex<<8 | bits). Raises SdoAbort.
 
     Mapping is byte-granular: objects of one bit cannot be mapped (decided here).
@@ -71,7 +83,7 @@ def make_plan(values: ObjectValues, mapping: tuple[int, ...], *, sending: bool) 
     codes = ["<"]
     entries = []
     for word in mapping:
-        entry = mapped_entry(values, word, sending=sending)
+        entry = mapped_entry(description, word, sending=sending)
         if entry is None:
             codes.append(f"{(word & 0xFF) // 8}x")
         else:
@@ -84,13 +96,16 @@ def make_plan(values: ObjectValues, mapping: tuple[int, ...], *, sending: bool) 
     return PdoPlan(mapping, tuple(entries), addresses, codec)
 
 
-def mapped_entry(values: ObjectValues, word: int, *, sending: bool) -> Entry | None:
+def mapped_entry(description: ObjectDictionary, word: int, *, sending: bool) -> Entry | None:
     """Return the object of a mapping entry, None for a dummy of an RPDO. Raises SdoAbort."""
     index, subindex, bits = word >> 16, word >> 8 & 0xFF, word & 0xFF
     if index < 0x20 and not sending:
         _check_dummy(index, subindex, bits)
         return None
-    entry = values.entry(index, subindex)
+    if (index, subindex) not in description:
+        known = description.has_object(index)
+        raise SdoAbort(AbortCode.NO_SUBINDEX if known else AbortCode.NO_OBJECT)
+    entry = description[index, subindex]
     size = size_of(entry.data_type)
     allowed = entry.access.readable if sending else entry.access.writable
     whole_bytes = size is not None and entry.data_type is not DataType.BOOLEAN and bits == 8 * size
@@ -152,25 +167,37 @@ class _Pdo:
 
     def reload(self) -> None:
         """Take over the values of the dictionary after power-on or reset. Raises InputError (broken EDS)."""
-        self.cob_word = self._values.number(self._communication, _COB_ID)
-        self.transmission = self._values.number(self._communication, _TYPE)
+        self.cob_word = self._values.number(self._communication, _Parameter.COB_ID)
+        self.transmission = self._values.number(self._communication, _Parameter.TYPE)
         count = self._values.number(self._mapping, 0)
         try:
-            self.plan = make_plan(self._values, self._entries(count), sending=self.sending)
+            self.plan = make_plan(self._values.description, self._entries(count), sending=self.sending)
         except SdoAbort as abort:
             raise InputError(f"default mapping of 0x{self._mapping:04X}: {abort}") from abort
         self._changed()
 
     def _hook(self) -> None:
-        communication, mapping = self._communication, self._mapping
-        self._values.on_write(communication, _COB_ID, self._write_cob_id)
-        self._values.on_write(communication, _TYPE, self._write_type)
-        if self._values.has(communication, _INHIBIT):
-            self._values.on_write(communication, _INHIBIT, self._write_inhibit)
-        self._values.on_write(mapping, 0, self._write_count)
-        for subindex in range(1, MAX_ENTRIES + 1):
-            if self._values.has(mapping, subindex):
-                self._values.on_write(mapping, subindex, self._write_entry)
+        for needed in (_Parameter.COB_ID, _Parameter.TYPE):
+            self._values.entry(self._communication, needed)
+        self._values.on_write_record(self._communication, self._write_parameter)
+        self._values.on_write_record(self._mapping, self._write_mapping)
+
+    def _write_parameter(self, subindex: int, value: Value) -> None:
+        match subindex:
+            case _Parameter.COB_ID:
+                self._write_cob_id(value)
+            case _Parameter.TYPE:
+                self._write_type(value)
+            case _Parameter.INHIBIT:
+                self._write_inhibit(value)
+            case _:
+                pass
+
+    def _write_mapping(self, subindex: int, value: Value) -> None:
+        if subindex == 0:
+            self._write_count(value)
+        elif subindex <= MAX_ENTRIES:
+            self._write_entry(value)
 
     def _entries(self, count: int) -> tuple[int, ...]:
         return tuple(self._values.number(self._mapping, subindex) for subindex in range(1, count + 1))
@@ -196,7 +223,7 @@ class _Pdo:
 
     def _write_inhibit(self, value: Value) -> None:
         """Refuse a change while the PDO exists."""
-        if self.valid and int(value) != self._values.number(self._communication, _INHIBIT):
+        if self.valid and int(value) != self._values.number(self._communication, _Parameter.INHIBIT):
             raise SdoAbort(AbortCode.UNSUPPORTED_ACCESS)
 
     def _write_count(self, value: Value) -> None:
@@ -206,7 +233,7 @@ class _Pdo:
             raise SdoAbort(AbortCode.UNSUPPORTED_ACCESS)
         if count > MAX_ENTRIES or (count and not self._values.has(self._mapping, count)):
             raise SdoAbort(AbortCode.PDO_LENGTH)
-        self.plan = make_plan(self._values, self._entries(count), sending=self.sending)
+        self.plan = make_plan(self._values.description, self._entries(count), sending=self.sending)
         self._changed()
 
     def _write_entry(self, value: Value) -> None:
@@ -214,7 +241,7 @@ class _Pdo:
         if self.valid or self._values.number(self._mapping, 0):
             raise SdoAbort(AbortCode.UNSUPPORTED_ACCESS)
         if value:
-            mapped_entry(self._values, int(value), sending=self.sending)
+            mapped_entry(self._values.description, int(value), sending=self.sending)
 
 
 class Rpdo(_Pdo):
@@ -316,11 +343,15 @@ class Tpdo(_Pdo):
         return None if timer is None else max(timer, self._inhibited_until())
 
     def _timer_due(self) -> Ns | None:
-        timer_ms = self._optional(_EVENT_TIMER)
+        timer_ms = self._optional(_Parameter.EVENT_TIMER)
         return None if not timer_ms or self._sent_at is None else Ns(self._sent_at + timer_ms * NS_PER_MS)
 
     def _inhibited_until(self) -> Ns:
-        return Ns(0) if self._sent_at is None else Ns(self._sent_at + self._optional(_INHIBIT) * _INHIBIT_NS)
+        return (
+            Ns(0)
+            if self._sent_at is None
+            else Ns(self._sent_at + self._optional(_Parameter.INHIBIT) * _INHIBIT_NS)
+        )
 
     def _optional(self, subindex: int) -> int:
         has = self._values.has(self._communication, subindex)

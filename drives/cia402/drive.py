@@ -146,6 +146,10 @@ class Drive:
         self._now = now
         return self.device.on_frame(frame, now)
 
+    def hears(self) -> frozenset[int]:
+        """Return the identifiers of the frames that it may act on."""
+        return self.device.hears()
+
     def tick(self, now: Ns) -> list[CanFrame]:
         """Return what is due by time or event."""
         self._now = now

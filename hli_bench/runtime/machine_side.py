@@ -12,6 +12,7 @@ from hli_bench.laws.machine import advance_machine
 from hli_bench.laws.native import bind
 from hli_bench.laws.rows import MachineRows, Rows
 from hli_bench.laws.stride import exchange_in
+from hli_bench.protocols.canopen.device import CONFIGURING
 from hli_bench.wire.can import CanFrame
 from hli_bench.wire.images import ProcessImage
 from hli_bench.wire.signals import Edge
@@ -43,6 +44,9 @@ class DriveNode(Protocol):
 
     def on_frame(self, frame: CanFrame, now: Ns) -> list[CanFrame]:
         """Take one frame, SYNC included."""
+
+    def hears(self) -> frozenset[int]:
+        """Return the identifiers of the frames that it may act on."""
 
     def tick(self, now: Ns) -> list[CanFrame]:
         """Return what is due by time or event."""
@@ -113,6 +117,10 @@ class MachineSide:
         self._channels = b""
         """The channels' rows as of the last images: without a change there the images stay."""
         self._images: Mapping[str, bytes] = {}
+        self._heard: list[frozenset[int]] = []
+        self._hearing: dict[int, list[DriveNode]] = {}
+        """Drives by the identifiers that they may act on: a frame is offered to nobody else."""
+        self._listen()
         self._forced = sorted(forced, key=lambda one: one.at_ns)
         self._exchange_in = bind(exchange_in, axis, rows.servo)
         self._advance = bind(
@@ -144,12 +152,25 @@ class MachineSide:
         now = Ns(cycle * self.cycle_ns)
         frames: list[CanFrame] = []
         for frame in (*inbox, SYNC):
-            for drive in self.drives:
+            for drive in self._hearing.get(frame.cob_id, ()):
                 frames += drive.on_frame(frame, now)
+            if frame.cob_id in CONFIGURING:
+                self._listen()
         for drive in self.drives:
             frames += drive.tick(now)
         self._due, self._ticked, self._words = NOT_KNOWN, cycle, b""
         return sorted(frames, key=lambda frame: frame.cob_id)
+
+    def _listen(self) -> None:
+        """Find out anew who hears which identifier."""
+        heard = [drive.hears() for drive in self.drives]
+        if heard == self._heard:
+            return
+        self._heard = heard
+        self._hearing = {}
+        for drive, identifiers in zip(self.drives, heard, strict=True):
+            for cob_id in sorted(identifiers):
+                self._hearing.setdefault(cob_id, []).append(drive)
 
     def exchange(self, cycle: int) -> None:
         """Pass the standard telegrams of a SYNC in which only control words changed, by numbers."""

@@ -18,6 +18,7 @@ from hli_bench.protocols.canopen.emcy import (
 )
 from hli_bench.protocols.canopen.lss import MASTER_COB_ID, LssSlave
 from hli_bench.protocols.canopen.nmt import (
+    ERROR_CONTROL_COB_ID,
     NMT_COB_ID,
     ErrorControl,
     HeartbeatConsumer,
@@ -31,6 +32,10 @@ from hli_bench.protocols.canopen.sdo_server import SdoServer
 from hli_bench.protocols.canopen.sync import SyncConsumer
 from hli_bench.wire.can import CanFrame
 
+_TALKING: Final = (NmtState.PRE_OPERATIONAL, NmtState.OPERATIONAL)
+"""States in which a node answers SDOs and sends EMCY."""
+CONFIGURING: Final = frozenset({NMT_COB_ID, MASTER_COB_ID, *range(REQUEST_COB_ID, REQUEST_COB_ID + 0x80)})
+"""Identifiers whose frames may change what a node hears."""
 _IDENTITY: Final = 0x1018
 _SERIAL: Final = 4
 """Sub-index of the serial number, which stays when LSS gives the node another id."""
@@ -120,8 +125,7 @@ class Device:
         if cob_id == MASTER_COB_ID:
             return self._lss.on_frame(frame, self.node_id)
         if cob_id == REQUEST_COB_ID + self.node_id:
-            talking = self.nmt.state in {NmtState.PRE_OPERATIONAL, NmtState.OPERATIONAL}
-            return self._sdo.on_frame(frame, now) if talking else []
+            return self._sdo.on_frame(frame, now) if self.nmt.state in _TALKING else []
         self._consumer.on_frame(frame, now)
         guarded = self._error_control.on_frame(frame, now)
         return guarded or self._on_pdo(frame, now)
@@ -142,17 +146,31 @@ class Device:
         self._consumer.tick(now)
         frames = self._error_control.tick(now)
         self._check_connection()
-        if self.nmt.state in {NmtState.PRE_OPERATIONAL, NmtState.OPERATIONAL}:
+        if self.nmt.state in _TALKING:
             frames += self._sdo.tick(now) + self.emcy.tick(now)
         if self.nmt.state is NmtState.OPERATIONAL:
             due = [tpdo.tick(now) for tpdo in self._pdos.on_event]
             frames += [frame for frame in due if frame is not None]
-        return sorted(frames, key=lambda frame: frame.cob_id)
+        return sorted(frames, key=lambda frame: frame.cob_id) if len(frames) > 1 else frames
+
+    def hears(self) -> frozenset[int]:
+        """Return the identifiers that `on_frame` may act on; a configuration by SDO, NMT or LSS changes them."""
+        node = self.node_id
+        always = {
+            self._sync.cob_id,
+            NMT_COB_ID,
+            MASTER_COB_ID,
+            REQUEST_COB_ID + node,
+            ERROR_CONTROL_COB_ID + node,
+        }
+        watched = {ERROR_CONTROL_COB_ID + other for other in self._consumer.nodes}
+        pdos = {pdo.cob_id for pdo in (*self._pdos.rpdos, *self._pdos.tpdos) if pdo.valid}
+        return frozenset(always | watched | pdos)
 
     def next_due(self, now: Ns) -> Ns | None:
         """Return when `tick` has something to do at the latest; a mapped value may change earlier."""
         dues: list[Ns | None] = [self._error_control.next_due(now), self._consumer.next_due()]
-        if self.nmt.state in {NmtState.PRE_OPERATIONAL, NmtState.OPERATIONAL}:
+        if self.nmt.state in _TALKING:
             dues += [self._sdo.next_due(), self.emcy.next_due()]
         if self.nmt.state is NmtState.OPERATIONAL:
             dues += [tpdo.next_due() for tpdo in self._pdos.on_event]

@@ -192,6 +192,11 @@ class HeartbeatConsumer:
         """Node ids whose heartbeat is overdue."""
         return tuple(node for node, watched in self._watched.items() if watched.lost)
 
+    @property
+    def nodes(self) -> tuple[int, ...]:
+        """Node ids of the watched nodes."""
+        return tuple(self._watched)
+
     def reload(self) -> None:
         """Take over the dictionary's values after a reset."""
         self._watched = {}

@@ -6,6 +6,7 @@ the second edge. Source: measurement manual 6.4 for what measuring needs.
 """
 
 from collections.abc import Iterable, Sequence
+from functools import cache
 from struct import Struct
 from typing import Any, Final, NamedTuple
 
@@ -30,28 +31,23 @@ class Number(NamedTuple):
         return self.object_index << 16 | BITS[self.code]
 
 
-class Telegram(NamedTuple):
-    """One PDO: COB-ID of node 0 and its numbers in order."""
+class Telegram:
+    """One PDO: COB-ID of node 0, its numbers in order, their mapping entries, how the data bytes are packed."""
 
-    base: int
-    numbers: tuple[Number, ...]
+    __slots__ = ("base", "layout", "mapping", "numbers")
 
-    @property
-    def mapping(self) -> tuple[int, ...]:
-        """The entries of 0x1600 or 0x1A00 and those behind."""
-        return tuple(number.entry for number in self.numbers)
-
-    @property
-    def layout(self) -> Struct:
-        """How its data bytes are packed."""
-        return Struct("<" + "".join(number.code for number in self.numbers))
+    def __init__(self, base: int, numbers: tuple[Number, ...]) -> None:
+        self.base = base
+        self.numbers = numbers
+        self.mapping = tuple(number.entry for number in numbers)
+        self.layout = Struct("<" + "".join(number.code for number in numbers))
 
     def frame(self, node: int, row: Any) -> CanFrame:
         """Return the frame of a node with the numbers of a row."""
-        values = (
-            int(row[number.name] if number.element is None else row[number.name][number.element])
+        values = [
+            row[number.name] if number.element is None else row[number.name][number.element]
             for number in self.numbers
-        )
+        ]
         return CanFrame(self.base + node, self.layout.pack(*values))
 
 
@@ -61,6 +57,7 @@ RPDOS: Final = (
 )
 
 
+@cache
 def tpdos(probing_input: int = 0) -> tuple[Telegram, ...]:
     """Return the TPDOs that carry the latches of a probing input (0 or 1); 0 is the default map."""
     positive, negative = _LATCHES[2 * probing_input : 2 * probing_input + 2]
@@ -83,4 +80,6 @@ def frames(telegrams: Iterable[Telegram], node: int, row: Any) -> list[CanFrame]
 def changed(probing_input: int) -> Sequence[tuple[int, Telegram]]:
     """Return place and telegram of the TPDOs that are not the default ones for a probing input."""
     pairs = zip(TPDOS, tpdos(probing_input), strict=True)
-    return [(place, other) for place, (default, other) in enumerate(pairs) if other != default]
+    return [
+        (place, other) for place, (default, other) in enumerate(pairs) if other.mapping != default.mapping
+    ]

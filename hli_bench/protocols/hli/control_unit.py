@@ -30,14 +30,13 @@ class ControlUnit:
 
     def __init__(self, image: Image, path: str, default: Value) -> None:
         """`default` is the GUI's value until `ask` changes it."""
-        ids = {element.member: element.id for element in image.layout.groups[path].elements}
-        area = "/".join(path.split("/", 2)[:2])
+        ids = image.layout.groups[path].ids
         self.path = path
         self._image = image
         self._request, self._enable = ids["request_r"], ids["enable_w"]
         self._command, self._state = ids["command_w"], ids["state_r"]
         self._semaphor = ids.get("command_semaphor_rw")
-        self._present = image.layout.element(f"{area}/head/plc_present_w").id
+        self._present = image.layout.groups[f"{_area(path)}/head"].ids["plc_present_w"]
         self._gui = default
         self.effective: Value = default
         self.redirected = False
@@ -98,15 +97,14 @@ class ControlUnits:
         self._units: dict[str, ControlUnit] = {}
         self._by_element: dict[int, tuple[ControlUnit, ...]] = {}
         for path, group in image.layout.groups.items():
-            names = {element.member: element for element in group.elements}
-            if "enable_w" not in names or "command_w" not in names:
+            ids = group.ids
+            if "enable_w" not in ids or "command_w" not in ids:
                 continue
-            zero = False if names["command_w"].type == "BOOL" else 0
+            zero = False if image.layout.elements[ids["command_w"]].type == "BOOL" else 0
             unit = ControlUnit(image, path, defaults.get(path.rpartition("/")[2], zero))
             unit.sample()
             self._units[path] = unit
-            for element in group.elements:
-                self._by_element[element.id] = (unit,)
+            self._by_element |= dict.fromkeys(ids.values(), (unit,))
         self._add_presence()
 
     def __getitem__(self, name: str) -> ControlUnit:
@@ -128,8 +126,14 @@ class ControlUnits:
         return [unit for unit in touched.values() if unit.sample()]
 
     def _add_presence(self) -> None:
-        for element in self._image.layout.elements:
-            if element.member == "plc_present_w":
-                area = element.path.removesuffix("head/plc_present_w")
-                units = tuple(unit for path, unit in self._units.items() if path.startswith(area))
-                self._by_element[element.id] = units
+        """Let a PLC's presence touch all units of its area."""
+        areas: dict[str, list[ControlUnit]] = {}
+        for path, unit in self._units.items():
+            areas.setdefault(_area(path), []).append(unit)
+        for area, units in areas.items():
+            self._by_element[self._image.layout.groups[f"{area}/head"].ids["plc_present_w"]] = tuple(units)
+
+
+def _area(path: str) -> str:
+    """Return axis or channel of a unit: `ax/2` of `ax/2/lr_mc_control/probing_signal`."""
+    return "/".join(path.split("/", 2)[:2])

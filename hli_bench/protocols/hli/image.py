@@ -1,7 +1,5 @@
 """All HLI elements as one run of bytes: what `hli/image` carries after its 16-byte header."""
 
-from struct import Struct
-
 from hli_bench.protocols.hli.layout import Layout
 
 Value = int | bool
@@ -10,16 +8,12 @@ Value = int | bool
 class Image:
     """The bytes behind all elements, with typed access by element id and memory of what changed."""
 
-    __slots__ = ("_changed", "_group_of", "_groups", "_offset", "_struct", "_written", "data", "layout")
+    __slots__ = ("_changed", "_offset", "_struct", "_written", "data", "layout")
 
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
         self.data = bytearray(layout.size)
-        structs = {code: Struct("<" + code) for code in {element.code for element in layout.elements}}
-        self._struct = [structs[element.code] for element in layout.elements]
-        self._offset = [element.offset for element in layout.elements]
-        self._groups = list(layout.groups.values())
-        self._group_of = [layout.groups[element.group].index for element in layout.elements]
+        self._struct, self._offset = layout.packing, layout.offsets
         self._changed: dict[int, None] = {}
         self._written: dict[int, None] = {}
 
@@ -33,7 +27,7 @@ class Image:
         packing, offset = self._struct[element], self._offset[element]
         if packing.unpack_from(self.data, offset)[0] != value:
             packing.pack_into(self.data, offset, value)
-            self._changed[self._group_of[element]] = None
+            self._changed[self.layout.group_of[element]] = None
 
     def write(self, element: int, value: Value) -> None:
         """Set a value from the PLC's side; the control units see it at their next sampling."""
@@ -50,7 +44,8 @@ class Image:
         """Return (path, packed members) of every unit that changed since the last call, in layout order."""
         if not self._changed:
             return []
-        changed = [self._groups[index] for index in sorted(self._changed)]
+        groups = list(self.layout.groups.values())
+        changed = [groups[index] for index in sorted(self._changed)]
         self._changed.clear()
         return [(group.path, group.pack(self.data)) for group in changed]
 

@@ -48,12 +48,14 @@ class Element:
 class Group:
     """The elements with one parent path, e.g. a control unit; knows its bytes in the image and packed."""
 
-    __slots__ = ("_in_image", "_packed", "elements", "index", "path", "start")
+    __slots__ = ("_in_image", "_packed", "elements", "ids", "index", "path", "start")
 
     def __init__(self, index: int, path: str, elements: Sequence[Element]) -> None:
         self.index = index
         self.path = path
         self.elements = tuple(elements)
+        self.ids = {element.member: element.id for element in elements}
+        """Element ids by member."""
         self.start = self.elements[0].offset
         text, at = "<", self.start
         for element in self.elements:
@@ -73,14 +75,23 @@ class Group:
 
     def values(self, packed: bytes) -> dict[str, int | bool]:
         """Return the members by name from what `pack` made."""
-        names = (element.member for element in self.elements)
-        return dict(zip(names, self._packed.unpack(packed), strict=True))
+        return dict(zip(self.ids, self._packed.unpack(packed), strict=True))
 
 
 class Layout:
     """All elements of a machine's HLI, in an order that depends on nothing but its axes and channels."""
 
-    __slots__ = ("_aliases", "_canonical", "_elements_by_path", "elements", "groups", "size")
+    __slots__ = (
+        "_aliases",
+        "_canonical",
+        "_elements_by_path",
+        "elements",
+        "group_of",
+        "groups",
+        "offsets",
+        "packing",
+        "size",
+    )
 
     def __init__(self, axes: Sequence[tuple[int, str, str]], channels: int = 1) -> None:
         """Lay out the areas of `axes`, each (number, name, kind: linear|rotary|spindle), and the channels."""
@@ -129,7 +140,7 @@ class Layout:
         path = self.resolve(name)
         element = self._elements_by_path.get(path)
         if element is None:
-            names = ", ".join(member.member for member in self.groups[path].elements)
+            names = ", ".join(self.groups[path].ids)
             raise InputError(f"{name!r} is a whole unit; name one of its members: {names}")
         return element
 
@@ -149,10 +160,15 @@ class Layout:
         self._aliases = {path: names for path, names in aliases.items() if names}
         self.size = -(-max((e.offset + e.size for e in elements), default=0) // 8) * 8
         self._elements_by_path = {element.path: element for element in elements}
+        packing = {code: Struct("<" + code) for code in {element.code for element in elements}}
+        self.packing = [packing[element.code] for element in elements]
+        """How each element is packed, by its id; as the next two."""
+        self.offsets = [element.offset for element in elements]
         by_group: dict[str, list[Element]] = {}
         for element in elements:
             by_group.setdefault(element.group, []).append(element)
         self.groups = {path: Group(at, path, of) for at, (path, of) in enumerate(by_group.items())}
+        self.group_of = [self.groups[element.group].index for element in elements]
         self._canonical = {path.casefold(): path for path in (*self._elements_by_path, *self.groups)}
         for path, names in self._aliases.items():
             places = {"/".join(path.split("/", 2)[:2]), path.rpartition("/")[0]}

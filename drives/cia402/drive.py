@@ -9,7 +9,7 @@ stop is over when the axis does, at the latest after STOP_TIMEOUT (decided here)
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -24,7 +24,7 @@ from hli_bench.base.time import NS_PER_S, Ns
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.datatypes import Value
 from hli_bench.protocols.canopen.device import Device
-from hli_bench.protocols.canopen.eds import load
+from hli_bench.protocols.canopen.eds import ObjectDictionary, load
 from hli_bench.protocols.canopen.nmt import NmtState
 from hli_bench.wire.can import CanFrame
 
@@ -399,11 +399,17 @@ def create(name: str, node_id: int, eds_path: Path, row: Any, options: Mapping[s
     """Build the drive `name` from its EDS on its servo row. Raises InputError for a bad EDS or option."""
     checked = DriveOptions.from_mapping(options, name)
     description = load(eds_path)
+    _check(description, eds_path)
+    return Drive(name, Device(description, node_id), row, checked)
+
+
+@cache
+def _check(description: ObjectDictionary, eds_path: Path) -> None:
+    """Raise InputError when an EDS lacks what the profile needs."""
     for index, subindex in objects.ALL:
         if (index, subindex) not in description:
             message = f"a CiA 402 drive needs object 0x{index:04X}:{subindex:02X}"
             raise InputError(message, file=str(eds_path))
-    return Drive(name, Device(description, node_id), row, checked)
 
 
 def _number(row: Any, name: str) -> int:

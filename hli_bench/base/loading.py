@@ -3,14 +3,16 @@
 import importlib
 import importlib.util
 import sys
+from functools import lru_cache
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 
 from hli_bench.base.errors import InputError
 
 _PACKAGE = Path(__file__).resolve().parent.parent
 
 
+@lru_cache(maxsize=256)
 def data_file(folder: str, name: str) -> Path:
     """Return the path of `folder/name` (`eds`, `plc_scripts`, `programs`, `machines`), in a checkout or a wheel.
 
@@ -55,5 +57,12 @@ def script(path: Path) -> ModuleType:
         raise InputError("not a Python file", file=str(path))
     loaded = importlib.util.module_from_spec(spec)
     sys.modules[name] = loaded
-    exec(compile(path.read_bytes(), path, "exec"), vars(loaded))
+    exec(_compiled(path.read_bytes(), path), vars(loaded))
     return loaded
+
+
+@lru_cache(maxsize=32)
+def _compiled(text: bytes, path: Path) -> CodeType:
+    """Return the byte code of a script, compiled once a process for the same text."""
+    code: CodeType = compile(text, path, "exec")
+    return code

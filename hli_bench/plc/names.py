@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from difflib import get_close_matches
-from functools import cache
+from functools import cache, lru_cache
 from struct import Struct
 from typing import Any, NoReturn
 
@@ -233,7 +233,8 @@ def _io_node(path: str, entries: Sequence[tuple[list[str], Callable[[Any], Value
     return node
 
 
-def _structures(layout: Layout) -> dict[str, tuple[str, ...]]:
+@lru_cache(maxsize=32)
+def _structures(layout: Layout) -> Mapping[str, tuple[str, ...]]:
     """Return the names inside of every structure, from `ax` down to the control units."""
     inside: dict[str, dict[str, None]] = {}
     for path in layout.groups:

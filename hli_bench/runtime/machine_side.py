@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import is_
 from typing import Any, Final, Protocol
 
 import numpy as np
@@ -164,7 +165,7 @@ class MachineSide:
     def _listen(self) -> None:
         """Find out anew who hears which identifier."""
         heard = [drive.hears() for drive in self.drives]
-        if heard == self._heard:
+        if all(map(is_, heard, self._heard)) and self._hearing:
             return
         self._heard = heard
         self._hearing = {}

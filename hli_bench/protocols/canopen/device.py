@@ -74,6 +74,8 @@ class Device:
         "_application",
         "_consumer",
         "_error_control",
+        "_heard",
+        "_heard_in",
         "_lss",
         "_pdos",
         "_sdo",
@@ -94,6 +96,9 @@ class Device:
         self._sdo = SdoServer(self.values, node_id)
         self._lss = LssSlave(node_id, self._identity())
         self._application: Application | None = None
+        self._heard: frozenset[int] = frozenset()
+        self._heard_in: tuple[object, ...] = ()
+        """What `_heard` was worked out from."""
         self._hook_storage(_STORE, _SAVE, self.values.store)
         self._hook_storage(_RESTORE, _LOAD, self.values.restore_factory)
 
@@ -155,17 +160,14 @@ class Device:
 
     def hears(self) -> frozenset[int]:
         """Return the identifiers that `on_frame` may act on; a configuration by SDO, NMT or LSS changes them."""
-        node = self.node_id
-        always = {
-            self._sync.cob_id,
-            NMT_COB_ID,
-            MASTER_COB_ID,
-            REQUEST_COB_ID + node,
-            ERROR_CONTROL_COB_ID + node,
-        }
-        watched = {ERROR_CONTROL_COB_ID + other for other in self._consumer.nodes}
-        pdos = {pdo.cob_id for pdo in (*self._pdos.rpdos, *self._pdos.tpdos) if pdo.valid}
-        return frozenset(always | watched | pdos)
+        state = self._pdos.changes, self.node_id, self._sync.cob_id, self._consumer.nodes
+        if state != self._heard_in:
+            self._heard_in = state
+            own = {NMT_COB_ID, MASTER_COB_ID, REQUEST_COB_ID + self.node_id, self._sync.cob_id}
+            states = {ERROR_CONTROL_COB_ID + node for node in (self.node_id, *self._consumer.nodes)}
+            pdos = {pdo.cob_id for pdo in (*self._pdos.rpdos, *self._pdos.tpdos) if pdo.valid}
+            self._heard = frozenset(own | states | pdos)
+        return self._heard
 
     def next_due(self, now: Ns) -> Ns | None:
         """Return when `tick` has something to do at the latest; a mapped value may change earlier."""

@@ -45,7 +45,8 @@ _ENGINES: Final[list[Any]] = []
 """What holds the machine code, as long as the process."""
 
 
-def parameters(entry: Entry) -> dict[str, Any]:
+@functools.cache
+def parameters(entry: Entry) -> Mapping[str, Any]:
     """Return the parameters of a law with their annotations, in order."""
     names = entry.__code__.co_varnames[: entry.__code__.co_argcount]
     return {name: entry.__annotations__[name] for name in names}
@@ -75,12 +76,12 @@ def bind(entry: Entry, *leading: Rows | float) -> Entry:
     """
     if PLAIN:
         return functools.partial(entry, *leading)
-    kinds = list(parameters(entry).items())
+    kinds = parameters(entry)
     expected = len(kinds) - ENTRIES[entry]
     if len(leading) != expected:
         raise TypeError(f"{entry.__name__}: {len(leading)} arguments to bind, expected {expected}")
     words: list[int] = []
-    for (name, kind), argument in zip(kinds, leading, strict=False):
+    for (name, kind), argument in zip(kinds.items(), leading, strict=False):
         if kind is Rows:
             words += _place(entry, name, argument)
         else:

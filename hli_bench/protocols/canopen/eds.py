@@ -114,12 +114,18 @@ class ObjectDictionary:
 
 
 def load(path: Path) -> ObjectDictionary:
-    """Read an EDS or DCF file. Raises InputError with file and line."""
+    """Read an EDS or DCF file, once a process as long as it is not written. Raises InputError with file and line."""
     try:
-        text = path.read_text(encoding="latin-1")
+        status = path.stat()
+        return _read(path, (status.st_ino, status.st_ctime_ns, status.st_size))
     except OSError as error:
         raise InputError(f"cannot read: {error.strerror}", file=str(path)) from error
-    return parse_text(text, str(path))
+
+
+@lru_cache(maxsize=64)
+def _read(path: Path, written: tuple[int, int, int]) -> ObjectDictionary:
+    """Read a file that was last `written` so (inode, time of change in ns, size)."""
+    return parse_text(path.read_text(encoding="latin-1"), str(path))
 
 
 @lru_cache(maxsize=64)

@@ -372,10 +372,9 @@ class PdoSet:
         self.changes = 0
         self._by_cob_id: dict[int, list[Rpdo]] | None = None
         self._on_event: tuple[Tpdo, ...] | None = None
-        indices = sorted(values.description.names)
-        changed = self._changed
-        self.rpdos = tuple(Rpdo(values, index, changed) for index in indices if index in RPDO_COMMUNICATION)
-        self.tpdos = tuple(Tpdo(values, index, changed) for index in indices if index in TPDO_COMMUNICATION)
+        received, sent = _communication(values.description)
+        self.rpdos = tuple(Rpdo(values, index, self._changed) for index in received)
+        self.tpdos = tuple(Tpdo(values, index, self._changed) for index in sent)
 
     @property
     def signature(self) -> tuple[Signature, ...]:
@@ -415,3 +414,10 @@ class PdoSet:
         self.changes += 1
         self._by_cob_id = None
         self._on_event = None
+
+
+@lru_cache(maxsize=64)
+def _communication(description: ObjectDictionary) -> tuple[list[int], list[int]]:
+    """Return the communication parameters of all RPDOs and of all TPDOs, in order."""
+    indices = sorted(description.names)
+    return [i for i in indices if i in RPDO_COMMUNICATION], [i for i in indices if i in TPDO_COMMUNICATION]

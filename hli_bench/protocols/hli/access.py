@@ -52,7 +52,7 @@ class Access:
         self._image = image
         self._owner: dict[str, str] = {}
         groups = image.layout.groups.items()
-        self._units = {path for path, group in groups if any(e.member == "enable_w" for e in group.elements)}
+        self._units = {path for path, group in groups if "enable_w" in group.ids}
         self.refused = 0
 
     def apply(self, order: Commands | MemberWrite) -> list[Refusal]:

@@ -18,6 +18,7 @@ import zenoh
 from _side_by_side import Work, in_turns, print_table, rate_ratio
 
 from hli_bench import Bench
+from hli_bench.base import garbage
 from hli_bench.protocols.hli.packing import IMAGE_HEADER
 from hli_bench.shells.processes import free_endpoint
 from hli_bench.shells.zenoh_session import connect, listen, payload, queued
@@ -99,6 +100,7 @@ def main() -> None:
     if arguments.echo:
         echo(arguments.echo)
         return
+    garbage.seldom()  # as the command line does
     with Bench(MACHINE, SETTINGS) as bench:
         bench.start_up()
         image = bytes(IMAGE_HEADER.size + bench.kernel.image.layout.size)

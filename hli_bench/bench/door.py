@@ -77,8 +77,10 @@ class HliDoor:
         if self._published != engine.cycle:
             engine.kernel.publish()
             self.publish(engine.cycle, engine.dc_ns, engine.link.images(engine.cycle))
-        self._acknowledge()
-        self._attend(self._server.requests())
+        if self._written or self._resets:
+            self._acknowledge()
+        if self._server.stirs or engine.lost:
+            self._attend(self._server.requests())
 
     def wait(self, timeout_s: float) -> None:
         """Wait for something to do while time stands still, and do it."""

@@ -6,23 +6,54 @@
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
+from threading import Lock
 from time import monotonic
 from typing import Any, Final
 
 import zenoh
 
+from hli_bench.base import garbage
 from hli_bench.base.errors import BenchError
-from hli_bench.base.time import Ns
 from hli_bench.plc import Task, load
-from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
+from hli_bench.protocols.hli.packing import IMAGE_HEADER, CommandsPacking, unpack_image
 from hli_bench.shells.zenoh_client import HliClient
-from hli_bench.shells.zenoh_session import payload, queued
+from hli_bench.shells.zenoh_session import on_network_thread, payload, queued
 
 RECONNECT_S: Final = 2.0
 """How long a PLC waits for a bench that vanished before it ends; a link comes back in 0.2 s."""
+
+
+class _Turn:
+    """A task's part of the exchange: the image of a cycle in, the commands that answer it out.
+
+    Due are the images from cycle `first` on whose cycle `period` divides; the bench puts others too.
+    """
+
+    __slots__ = ("_first", "_pack", "_period", "_put", "_task")
+
+    def __init__(
+        self, task: Task, packing: CommandsPacking, put: Callable[[bytes], None], first: int, period: int
+    ) -> None:
+        self._task = task
+        self._pack = packing.pack
+        self._put = put
+        self._first = first
+        self._period = period
+
+    def due(self, image: bytes) -> bool:
+        """Tell whether the task runs on an image."""
+        cycle, _ = IMAGE_HEADER.unpack_from(image)
+        return bool(cycle >= self._first and cycle % self._period == 0)
+
+    def answer(self, image: bytes, io: Mapping[str, bytes]) -> None:
+        """Run the task on an image if it is due, and put what it writes."""
+        if self.due(image):
+            cycle, dc_ns, elements = unpack_image(image)
+            self._put(self._pack(self._task.step(cycle, dc_ns, elements, io)))
 
 
 class ScriptClient:
@@ -48,17 +79,17 @@ class ScriptClient:
         self._packing = CommandsPacking(client.layout)
         self._inbox: SimpleQueue[tuple[str, Any]] = SimpleQueue()
         self._io: dict[str, bytes] = {}
+        self._lock = Lock()
+        self._turn: _Turn | None = None
+        """In lock-step: what answers an image on the network thread, without waking this one."""
 
     def run(self) -> None:
         """Attach and run until the bench ends. Raises InputError when the script fails or is refused."""
         session, machine = self._client.session, self._client.machine
         token = session.liveliness().declare_token(f"{self._key}/alive")
-        for key, kind in (
-            (f"{machine}/io/*", "io"),
-            (f"{machine}/hli/image", "image"),
-            (f"{self._key}/detached", "detached"),
-        ):
-            session.declare_subscriber(key, queued(self._inbox.put, kind))
+        for key, kind in ((f"{machine}/io/*", "io"), (f"{machine}/hli/image", "image")):
+            session.declare_subscriber(key, on_network_thread(partial(self._arrived, kind)))
+        session.declare_subscriber(f"{self._key}/detached", queued(self._inbox.put, "detached"))
         session.liveliness().declare_subscriber(
             f"{machine}/bench/alive", queued(self._inbox.put, "alive"), history=True
         )
@@ -80,39 +111,81 @@ class ScriptClient:
         terms = json.loads(
             client.ask_packed(f"plc/{self._name}/attach", json.dumps({"period_us": period_us}))
         )
-        first, period = terms["cycle"], terms["period_us"] // terms["cycle_us"]
         self._on_line(
             f"{self._name} is attached to {client.machine} at {client.endpoint}, every {terms['period_us']} us"
         )
         publisher = client.session.declare_publisher(f"{self._key}/commands", express=True)
+        period = terms["period_us"] // terms["cycle_us"]
+        turn = _Turn(task, self._packing, publisher.put, terms["cycle"], period)
+        try:
+            return self._in_lock_step(turn) if terms["lockstep"] else self._as_images_come(turn)
+        finally:
+            publisher.undeclare()
+
+    def _arrived(self, kind: str, sample: zenoh.Sample) -> None:
+        """Take an image or a terminal on the network thread: act in lock-step, else leave it to `run`."""
+        with self._lock:
+            if self._turn is None:
+                self._inbox.put((kind, sample))
+                return
+            try:
+                self._take(self._turn, kind, sample)
+            except BaseException as error:
+                self._turn = None
+                self._inbox.put(("failed", error))
+
+    def _take(self, turn: "_Turn", kind: str, sample: zenoh.Sample) -> None:
+        """Keep a terminal, answer an image."""
+        if kind == "image":
+            turn.answer(payload(sample), self._io)
+        else:
+            self._keep(sample)
+
+    def _keep(self, sample: zenoh.Sample) -> None:
+        self._io[str(sample.key_expr).rpartition("/")[2]] = payload(sample)
+
+    def _in_lock_step(self, turn: "_Turn") -> bool:
+        """Let every image be answered as it comes; wait for what ends that."""
+        ended: bool | None = None
+        with self._lock:
+            while not self._inbox.empty():
+                kind, message = self._inbox.get()
+                if kind in ("image", "io"):
+                    self._take(turn, kind, message)
+                else:
+                    ended = self._end(kind, message) if ended is None else ended
+            self._turn = turn if ended is None else None
+        while ended is None:
+            ended = self._end(*self._inbox.get())
+        with self._lock:
+            self._turn = None
+        return ended
+
+    def _as_images_come(self, turn: "_Turn") -> bool:
+        """Answer the newest image each time, with the terminals as of then; the others are left out."""
+        newest: tuple[bytes, dict[str, bytes]] | None = None
         while True:
-            image = self._next_image(first, period)
-            if isinstance(image, bool):
-                publisher.undeclare()
-                return image
-            cycle, dc_ns, elements, io = image
-            commands = task.step(cycle, dc_ns, elements, io)
-            publisher.put(self._packing.pack(commands))
+            if newest is not None and self._inbox.empty():
+                turn.answer(*newest)
+                newest = None
+            kind, message = self._inbox.get()
+            if kind == "io":
+                self._keep(message)
+            elif kind == "image":
+                image = payload(message)
+                newest = (image, dict(self._io)) if turn.due(image) else newest
+            elif (ended := self._end(kind, message)) is not None:
+                return ended
 
-    def _next_image(self, first: int, period: int) -> tuple[int, Ns, bytes, dict[str, bytes]] | bool:
-        """Return the newest image that is due with the terminals as of then, or the answer of `_attached`.
-
-        Due are the images from `first` on whose cycle `period` divides; the bench puts others too.
-        """
-        image: tuple[int, Ns, bytes, dict[str, bytes]] | None = None
-        while image is None or not self._inbox.empty():
-            kind, sample = self._inbox.get()
-            if kind == "image":
-                cycle, dc_ns, elements = unpack_image(payload(sample))
-                if cycle >= first and cycle % period == 0:
-                    image = cycle, dc_ns, elements, dict(self._io)
-            elif kind == "io":
-                self._io[str(sample.key_expr).rpartition("/")[2]] = payload(sample)
-            elif kind == "detached":
-                return True
-            elif sample.kind == zenoh.SampleKind.DELETE:
-                return self._bench_is_back()
-        return image
+    def _end(self, kind: str, message: Any) -> bool | None:
+        """Return whether to attach anew when a message ends this, None for one that does not."""
+        if kind == "failed":
+            raise message
+        if kind == "detached":
+            return True
+        if message.kind == zenoh.SampleKind.DELETE:
+            return self._bench_is_back()
+        return None
 
     def _bench_is_back(self) -> bool:
         """Tell whether a bench that went away shows up again: then only the link broke, e.g. of a frozen PLC."""
@@ -166,6 +239,7 @@ def main(arguments: Sequence[str]) -> int:
     except ValueError:
         sys.stderr.write("SCRIPT ENDPOINT [NAME [PERIOD_US]] expected, the period a whole number\n")
         return 2
+    garbage.seldom()
     try:
         attach(Path(script), endpoint, name=name, period_us=period_us)
     except KeyboardInterrupt:

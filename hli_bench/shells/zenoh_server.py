@@ -30,6 +30,8 @@ from hli_bench.shells.zenoh_values import Answers, LastValues
 from hli_bench.wire.hli import Commands, Write
 from hli_bench.wire.images import TerminalLayout
 
+COMMANDS: Final = "/commands"
+"""End of the key of a PLC's commands."""
 STRANGERS: Final = 64
 """So many names of clients that write without being attached are remembered, each to be told once."""
 REPLIES_A_CALL: Final = 64
@@ -47,6 +49,7 @@ class HliServer:
     ) -> None:
         """Listen on `endpoint`. Raises EnvironmentLacks when that is not possible."""
         self.machine = machine
+        self._name_at = len(f"{machine}/plc/")
         self.late: dict[str, int] = {}
         self._values = LastValues(layout, terminals)
         self._packing = CommandsPacking(layout)
@@ -104,6 +107,12 @@ class HliServer:
     def has_image_subscribers(self) -> bool:
         """Tell whether anybody listens to `hli/image`."""
         return bool(self._image.matching_status.matching)
+
+    @property
+    def stirs(self) -> bool:
+        """Whether something was asked or a PLC departed since the last look."""
+        self._drain()
+        return bool(self._requests or self._answers or self._departed)
 
     def requests(self) -> list[Request]:
         """Return what was asked since the last call, in order; reading queries are answered here."""
@@ -209,7 +218,7 @@ class HliServer:
         self._alive = session.liveliness().declare_token(f"{machine}/bench/alive")
         put = self._inbox.put
         for key, on_sample in (
-            ("plc/*/commands", self._on_commands),
+            (f"plc/*{COMMANDS}", self._on_commands),
             ("hli/unit/**", self._on_member),
             ("cnc/reset", self._on_reset_put),
         ):
@@ -259,7 +268,7 @@ class HliServer:
         handle(message)
 
     def _on_commands(self, sample: zenoh.Sample) -> None:
-        plc = _plc(sample)
+        plc = str(sample.key_expr)[self._name_at : -len(COMMANDS)]
         mail = self._mail.get(plc)
         if mail is not None:
             mail.append(payload(sample))

@@ -42,7 +42,12 @@ def connect(endpoint: str) -> Any:
 
 def queued(put: Any, kind: Any) -> Any:
     """Return a handler that puts (kind, message) in a queue and does nothing else on the network thread."""
-    return zenoh.handlers.Callback(lambda message: put((kind, message)), indirect=False)
+    return on_network_thread(lambda message: put((kind, message)))
+
+
+def on_network_thread(take: Any) -> Any:
+    """Return a handler that is called by the network thread itself, which waits for it."""
+    return zenoh.handlers.Callback(take, indirect=False)
 
 
 def is_text(encoding: zenoh.Encoding | None) -> bool:

@@ -59,6 +59,8 @@ class CommandsPacking:
     def unpack(self, plc: str, message: bytes) -> Commands:
         """Return the commands of `plc`. Raises InputError for an unknown element id or a cut-off entry."""
         cycle, at = self.cycle(message), _CYCLE.size
+        if len(message) == at:
+            return Commands(plc, cycle, ())
         writes: list[Write] = []
         while at < len(message):
             number = int.from_bytes(message[at : at + 2], "little")

@@ -75,7 +75,6 @@ class HliDoor:
         """Publish the cycle, do what was asked, let go of PLCs that have departed."""
         engine = self._engine
         if self._published != engine.cycle:
-            engine.kernel.publish()
             self.publish(engine.cycle, engine.dc_ns, engine.link.images(engine.cycle))
         if self._written or self._resets:
             self._acknowledge()

@@ -18,8 +18,6 @@ from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.records import Emitted
 from hli_bench.kernel.sequence import END, Sequence
 from hli_bench.kernel.setup import KernelSetup
-from hli_bench.laws.native import bind
-from hli_bench.laws.publish import publish_positions
 from hli_bench.laws.rows import FOLLOW, KernelRows
 from hli_bench.manual.errors import hli as hli_errors
 from hli_bench.protocols.canopen.cia402 import STATES
@@ -52,7 +50,8 @@ class Kernel:
         areas = [f"ax/{axis.number}/lr_state" for axis in setup.axes]
         offsets = np.array([layout.element(f"{area}/active_position_r").offset for area in areas])
         image = np.frombuffer(self.image.data, np.uint8)
-        self._publish = bind(publish_positions, self.core.rows.axis, image, offsets)
+        self.positions = image, offsets
+        """Bytes of the HLI image, and where the positions of each axis stand in it: the laws keep them up to date."""
         self._show_heads()
 
     @property
@@ -157,10 +156,6 @@ class Kernel:
         """A PLC has gone or frozen: the CNC reacts as to a PLC stop, the program ends with an error."""
         if self.channel.running:
             self.core.report(hli_errors.PLC_STOPPED, self.channel.source, name)
-
-    def publish(self) -> None:
-        """Bring the positions on the HLI up to date; called before somebody looks."""
-        self._publish()
 
     def position_mm(self, axis: AxisIndex) -> float:
         """Return the actual position of an axis in mm (degrees)."""

@@ -17,7 +17,6 @@ from hli_bench.base.loading import installed
 from hli_bench.laws import cache
 from hli_bench.laws.channels import advance_channels
 from hli_bench.laws.machine import advance_machine
-from hli_bench.laws.publish import publish_positions
 from hli_bench.laws.rows import TABLES, Rows
 from hli_bench.laws.segments import put_segment
 from hli_bench.laws.stride import exchange_in, exchange_out, stride
@@ -30,7 +29,6 @@ ENTRIES: Final[Mapping[Entry, int]] = {
     exchange_in: 0,
     exchange_out: 0,
     advance_channels: 2,
-    publish_positions: 0,
     put_segment: 2,
 }
 """Laws that Python calls, and how many of their last parameters change from call to call; the others are bound."""

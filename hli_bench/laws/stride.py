@@ -9,6 +9,7 @@ from typing import Final
 from hli_bench.laws.compiled import law
 from hli_bench.laws.control import act, sense, write_log
 from hli_bench.laws.machine import advance_machine
+from hli_bench.laws.publish import publish_positions
 from hli_bench.laws.rows import LOG_CYCLES, Rows
 
 MACHINE: Final = 0
@@ -64,6 +65,8 @@ def stride(
     edge: Rows,
     edges: Rows,
     pending: Rows,
+    image: Rows,
+    offsets: Rows,
     cycle_ns: int,
     sub_steps: int,
     dc_epoch_ns: int,
@@ -109,5 +112,7 @@ def stride(
         phase = MACHINE
         cycle += 1
         if edges[0] > edge.shape[0] // 2:
-            return (done + 1) * PLACES + MACHINE
+            cycles = done + 1
+            break
+    publish_positions(axis, image, offsets)
     return cycles * PLACES + MACHINE

@@ -132,6 +132,7 @@ class Engine:
             machine.edge,
             machine.edges,
             pending,
+            *kernel.positions,
             self._cycle_ns,
             link.sub_steps,
             kernel.setup.dc_epoch_ns,
@@ -295,7 +296,6 @@ class Engine:
         cycle = self.cycle
         due = [plc for plc in self.plcs if cycle % plc.period_cycles == 0]
         self._tick = cycle + due[0].period_cycles if len(self.plcs) == 1 else self._next_tick()
-        self.kernel.publish()
         io = self.link.images(cycle)
         dc_ns = self.dc_ns
         image = self.kernel.image.data

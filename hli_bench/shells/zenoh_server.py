@@ -25,7 +25,7 @@ from hli_bench.shells.zenoh_requests import (
     WriteRequest,
     json_object,
 )
-from hli_bench.shells.zenoh_session import JSON, PACKED, is_text, listen, payload, queued
+from hli_bench.shells.zenoh_session import JSON, PACKED, is_text, listen, on_network_thread, payload, queued
 from hli_bench.shells.zenoh_values import Answers, LastValues
 from hli_bench.wire.hli import Commands, Write
 from hli_bench.wire.images import TerminalLayout
@@ -218,14 +218,12 @@ class HliServer:
         self._alive = session.liveliness().declare_token(f"{machine}/bench/alive")
         put = self._inbox.put
         for key, on_sample in (
-            (f"plc/*{COMMANDS}", self._on_commands),
-            ("hli/unit/**", self._on_member),
-            ("cnc/reset", self._on_reset_put),
+            (f"plc/*{COMMANDS}", on_network_thread(self._commands_come)),
+            ("hli/unit/**", queued(put, self._on_member)),
+            ("cnc/reset", queued(put, self._on_reset_put)),
         ):
             # Remote only: the bench's own puts of units would come back as writes.
-            session.declare_subscriber(
-                f"{machine}/{key}", queued(put, on_sample), allowed_origin=zenoh.Locality.REMOTE
-            )
+            session.declare_subscriber(f"{machine}/{key}", on_sample, allowed_origin=zenoh.Locality.REMOTE)
         session.liveliness().declare_subscriber(
             f"{machine}/plc/*/alive", queued(put, self._on_alive), history=True
         )
@@ -267,11 +265,16 @@ class HliServer:
             return
         handle(message)
 
-    def _on_commands(self, sample: zenoh.Sample) -> None:
+    def _commands_come(self, sample: zenoh.Sample) -> None:
+        """Queue the bytes of a commands message: on the network thread, which has the sample at hand."""
         plc = str(sample.key_expr)[self._name_at : -len(COMMANDS)]
+        self._inbox.put((self._on_commands, (plc, payload(sample))))
+
+    def _on_commands(self, message: tuple[str, bytes]) -> None:
+        plc, commands = message
         mail = self._mail.get(plc)
         if mail is not None:
-            mail.append(payload(sample))
+            mail.append(commands)
         elif plc not in self._strangers:
             self._strangers.append(plc)
             self._refuse_commands(plc, "attach first")

@@ -92,6 +92,8 @@ def digest(cycles: int, per_stride: int) -> str:
         machine.edge,
         machine.edges,
         plant.pending,
+        np.zeros(36, np.uint8),
+        np.array([0, 12, 24]),
         1_000_000,
         8,
         EPOCH_NS,

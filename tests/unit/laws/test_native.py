@@ -10,10 +10,9 @@ import pytest
 
 from hli_bench.laws import cache
 from hli_bench.laws.native import bind, prepare
-from hli_bench.laws.publish import publish_positions
-from hli_bench.laws.rows import AXIS
+from hli_bench.laws.rows import AXIS, SERVO
+from hli_bench.laws.stride import exchange_out
 
-OFFSETS = np.array([0, 12])
 FIRST = (
     "from hli_bench.laws.native import prepare; import sys\n"
     "prepare(lambda: print('compiling'))\n"
@@ -24,38 +23,38 @@ FIRST = (
 @pytest.fixture
 def axis() -> np.ndarray:
     rows = np.zeros(2, AXIS)
-    rows["actual"] = 10.4, -3.0
+    rows["target"] = 10, -3
     return rows
 
 
 def test_a_bound_law_is_the_same_law(axis: np.ndarray) -> None:
-    plain, bound = np.zeros(24, np.uint8), np.zeros(24, np.uint8)
-    publish_positions(axis, plain, OFFSETS)
-    call = bind(publish_positions, axis, bound, OFFSETS)
+    plain, bound = np.zeros(2, SERVO), np.zeros(2, SERVO)
+    exchange_out(axis, plain)
+    call = bind(exchange_out, axis, bound)
     call()
     assert bound.tobytes() == plain.tobytes()
-    axis["actual"] = 7.0, 8.0
+    axis["target"] = 7, 8
     call()
-    assert bound[0] == 7, "rows are worked on where they lie"
+    assert list(bound["target"]) == [7, 8], "rows are worked on where they lie"
 
 
 @pytest.mark.parametrize(
-    ("image", "why"),
+    ("servo", "why"),
     [
-        (np.zeros(24), "float64"),
-        (np.zeros((2, 12), np.uint8), "2 dimensions"),
-        (np.zeros(48, np.uint8)[::2], "contiguous"),
-        (np.frombuffer(bytes(24), np.uint8), "writeable"),
+        (np.zeros(2), "float64"),
+        (np.zeros((2, 2), SERVO), "2 dimensions"),
+        (np.zeros(4, SERVO)[::2], "contiguous"),
+        (np.frombuffer(bytes(2 * SERVO.itemsize), SERVO), "writeable"),
     ],
 )
-def test_rows_of_another_kind_are_refused(axis: np.ndarray, image: np.ndarray, why: str) -> None:
-    with pytest.raises(TypeError, match=rf"publish_positions: image .*{why}"):
-        bind(publish_positions, axis, image, OFFSETS)
+def test_rows_of_another_kind_are_refused(axis: np.ndarray, servo: np.ndarray, why: str) -> None:
+    with pytest.raises(TypeError, match=rf"exchange_out: servo .*{why}"):
+        bind(exchange_out, axis, servo)
 
 
 def test_too_few_rows_are_refused(axis: np.ndarray) -> None:
-    with pytest.raises(TypeError, match="1 arguments to bind, expected 3"):
-        bind(publish_positions, axis)
+    with pytest.raises(TypeError, match="1 arguments to bind, expected 2"):
+        bind(exchange_out, axis)
 
 
 def first(folder: Path, **environment: str) -> str:

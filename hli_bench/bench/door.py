@@ -91,7 +91,7 @@ class HliDoor:
             return
         self._published = cycle
         image = self._engine.kernel.image
-        self._server.publish(cycle, dc_ns, bytes(image.data), image.take_changed(), io.items())
+        self._server.publish(cycle, dc_ns, bytes(image.data), image.take_changed(), io)
 
     def emitted(self, records: Iterable[Emitted]) -> None:
         """Put error records of the CNC."""

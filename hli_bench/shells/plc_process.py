@@ -19,7 +19,7 @@ import zenoh
 from hli_bench.base import garbage
 from hli_bench.base.errors import BenchError
 from hli_bench.plc import Task, load
-from hli_bench.protocols.hli.packing import IMAGE_HEADER, CommandsPacking, unpack_image
+from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
 from hli_bench.shells.zenoh_client import HliClient
 from hli_bench.shells.zenoh_session import on_network_thread, payload, queued
 
@@ -44,15 +44,14 @@ class _Turn:
         self._first = first
         self._period = period
 
-    def due(self, image: bytes) -> bool:
-        """Tell whether the task runs on an image."""
-        cycle, _ = IMAGE_HEADER.unpack_from(image)
-        return bool(cycle >= self._first and cycle % self._period == 0)
+    def due(self, cycle: int) -> bool:
+        """Tell whether the task runs on the image of a cycle."""
+        return cycle >= self._first and cycle % self._period == 0
 
-    def answer(self, image: bytes, io: Mapping[str, bytes]) -> None:
+    def answer(self, message: bytes, io: Mapping[str, bytes]) -> None:
         """Run the task on an image if it is due, and put what it writes."""
-        if self.due(image):
-            cycle, dc_ns, elements = unpack_image(image)
+        cycle, dc_ns, elements = unpack_image(message)
+        if self.due(cycle):
             self._put(self._pack(self._task.step(cycle, dc_ns, elements, io)))
 
 
@@ -173,7 +172,7 @@ class ScriptClient:
                 self._keep(message)
             elif kind == "image":
                 image = payload(message)
-                newest = (image, dict(self._io)) if turn.due(image) else newest
+                newest = (image, dict(self._io)) if turn.due(unpack_image(image)[0]) else newest
             elif (ended := self._end(kind, message)) is not None:
                 return ended
 

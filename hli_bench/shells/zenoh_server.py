@@ -51,6 +51,8 @@ class HliServer:
         self.machine = machine
         self._name_at = len(f"{machine}/plc/")
         self.late: dict[str, int] = {}
+        self._io: Mapping[str, bytes] = {}
+        """The images that were put last; the bench makes new ones only when one has changed."""
         self._values = LastValues(layout, terminals)
         self._packing = CommandsPacking(layout)
         self._mail: dict[str, deque[bytes]] = {}
@@ -93,12 +95,14 @@ class HliServer:
         dc_ns: Ns,
         image: bytes,
         units: Iterable[tuple[str, bytes]],
-        io: Iterable[tuple[str, bytes]],
+        io: Mapping[str, bytes],
     ) -> None:
         """Put what changed in a cycle: terminals, units, then the image, which says that all is there."""
-        for terminal, data in io:
-            for path, packed in self._values.take_terminal(terminal, data):
-                self._put(path, packed)
+        if io is not self._io:
+            self._io = io
+            for terminal, data in io.items():
+                for path, packed in self._values.take_terminal(terminal, data):
+                    self._put(path, packed)
         for path, packed in units:
             self._put(f"hli/unit/{path}", packed)
         self._values.cycle, self._values.dc_ns, self._values.image = cycle, dc_ns, image
@@ -140,8 +144,7 @@ class HliServer:
         """
         deadline = monotonic() + timeout_s
         overdue: tuple[Write, ...] = ()
-        while plc in self._mail:
-            mail = self._mail[plc]
+        while (mail := self._mail.get(plc)) is not None:
             while mail:
                 commands = self._unpacked(plc, mail.popleft())
                 if commands is None:

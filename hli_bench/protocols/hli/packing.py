@@ -40,7 +40,10 @@ class CommandsPacking:
 
     def pack(self, commands: Commands) -> bytes:
         """Return the message. Raises InputError for a path or value the layout does not have."""
-        message = [_CYCLE.pack(commands.cycle)]
+        answered = _CYCLE.pack(commands.cycle)
+        if not commands.writes:
+            return answered
+        message = [answered]
         for write in commands.writes:
             element = self._layout.element(write.path)
             try:

@@ -25,7 +25,16 @@ from hli_bench.shells.zenoh_requests import (
     WriteRequest,
     json_object,
 )
-from hli_bench.shells.zenoh_session import JSON, PACKED, is_text, listen, on_network_thread, payload, queued
+from hli_bench.shells.zenoh_session import (
+    JSON,
+    PACKED,
+    PATIENCE_US,
+    is_text,
+    listen,
+    on_network_thread,
+    payload,
+    queued,
+)
 from hli_bench.shells.zenoh_values import Answers, LastValues
 from hli_bench.wire.hli import Commands, Write
 from hli_bench.wire.images import TerminalLayout
@@ -45,9 +54,17 @@ class HliServer:
     """
 
     def __init__(
-        self, endpoint: str, machine: str, layout: Layout, terminals: Sequence[TerminalLayout]
+        self,
+        endpoint: str,
+        machine: str,
+        layout: Layout,
+        terminals: Sequence[TerminalLayout],
+        patience_us: int = PATIENCE_US,
     ) -> None:
-        """Listen on `endpoint`. Raises EnvironmentLacks when that is not possible."""
+        """Listen on `endpoint`; a link that is full for longer than `patience_us` loses messages.
+
+        Raises EnvironmentLacks when it cannot listen.
+        """
         self.machine = machine
         self._name_at = len(f"{machine}/plc/")
         self.late: dict[str, int] = {}
@@ -62,7 +79,7 @@ class HliServer:
         self._requests: list[Request] = []
         self._answers: deque[tuple[Any, Answers]] = deque()
         self._inbox: SimpleQueue[tuple[Callable[[Any], None], Any]] = SimpleQueue()
-        self._session = listen(endpoint)
+        self._session = listen(endpoint, patience_us)
         try:
             self._declare()
         except BaseException:
@@ -97,7 +114,10 @@ class HliServer:
         units: Iterable[tuple[str, bytes]],
         io: Mapping[str, bytes],
     ) -> None:
-        """Put what changed in a cycle: terminals, units, then the image, which says that all is there."""
+        """Put what changed in a cycle: terminals, units, then the image, which says that all is there.
+
+        An image that nobody listens to is kept for queries only.
+        """
         if io is not self._io:
             self._io = io
             for terminal, data in io.items():
@@ -106,7 +126,8 @@ class HliServer:
         for path, packed in units:
             self._put(f"hli/unit/{path}", packed)
         self._values.cycle, self._values.dc_ns, self._values.image = cycle, dc_ns, image
-        self._image.put(pack_image(cycle, dc_ns, image))
+        if self._mail or self.has_image_subscribers():
+            self._image.put(pack_image(cycle, dc_ns, image))
 
     def has_image_subscribers(self) -> bool:
         """Tell whether anybody listens to `hli/image`."""

@@ -12,17 +12,23 @@ DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
 LEASE_MS: Final = 500
 """A session that says nothing for so long is gone: this is how a frozen PLC is noticed."""
 
+PACED_PATIENCE_US: Final = 1000
+"""How long a put of a bench in real pace may wait for a link that is full before the message is dropped."""
+PATIENCE_US: Final = 100_000
+"""The same of everybody else: in lock-step a lost image or answer would end the PLC, and a busy computer needs ms."""
+
 TEXT: Final = zenoh.Encoding.TEXT_PLAIN
 JSON: Final = zenoh.Encoding.APPLICATION_JSON
 PACKED: Final = zenoh.Encoding.APPLICATION_OCTET_STREAM
+DROP_AFTER: Final = "transport/link/tx/queue/congestion_control/drop/wait_before_drop"
 _TEXTS: Final = ("text/", "application/json", "zenoh/string")
 _SOURCE_PLACE: Final = re.compile(r"\s+at /.*", re.DOTALL)
 
 
-def listen(endpoint: str) -> Any:
+def listen(endpoint: str, patience_us: int = PATIENCE_US) -> Any:
     """Open the bench's session: a router at `endpoint`. Raises EnvironmentLacks when it cannot listen."""
     try:
-        return zenoh.open(_config("router", {"listen/endpoints": [endpoint]}))
+        return zenoh.open(_config("router", {"listen/endpoints": [endpoint], DROP_AFTER: patience_us}))
     except zenoh.ZError as error:
         raise EnvironmentLacks(
             f"Zenoh cannot listen on {endpoint} ({_reason(error)}); is a bench up already? "
@@ -33,7 +39,7 @@ def listen(endpoint: str) -> Any:
 def connect(endpoint: str) -> Any:
     """Open a client's session to `endpoint`. Raises EnvironmentLacks when nobody listens there."""
     try:
-        return zenoh.open(_config("client", {"connect/endpoints": [endpoint]}))
+        return zenoh.open(_config("client", {"connect/endpoints": [endpoint], DROP_AFTER: PATIENCE_US}))
     except zenoh.ZError as error:
         raise EnvironmentLacks(
             f"no bench listens on {endpoint} ({_reason(error)}); start one with `hli-bench serve`"

@@ -349,3 +349,43 @@ def test_errors_of_the_bench_end_it_and_those_of_a_program_do_not() -> None:
 def test_a_deadline_passes() -> None:
     assert Deadline(0).over
     assert not Deadline(1000).over
+
+
+COUNTING = """
+from hli_bench.plc import Plc
+
+class Counting(Plc):
+    period_us = {period_us}
+
+    def start(self, hli, io):
+        hli.ax[{axis}].lr_mc_control.timestamp.enable_w = True
+
+    def cycle(self, hli, io):
+        hli.ax[{axis}].lr_mc_control.timestamp.command_w += 1
+"""
+
+
+def test_plcs_inside_and_outside_of_the_process_each_have_their_period(
+    serve: Any, program: Any, tmp_path: Path
+) -> None:
+    """In lock-step each runs once in its period, however many there are."""
+    periods = {1: 1, 2: 3, 3: 7}
+    scripts = {axis: tmp_path / f"plc{axis}.py" for axis in periods}
+    for axis, script in scripts.items():
+        script.write_text(COUNTING.format(axis=axis, period_us=1000 * periods[axis]))
+    bench = serve("--plc", scripts[1], "--pace", "free")
+    with bench.client() as client:
+        for axis in (2, 3):
+            bench.plc(scripts[axis])
+        assert {plc["name"]: plc["period_cycles"] for plc in client.state()["plcs"]} == {
+            "plc1": 1, "plc2": 3, "plc3": 7,
+        }  # fmt: skip
+        begin = client.state()["cycle"]
+        counts = {axis: client.get(f"ax/{axis}/lr_mc_control/timestamp/command_w") for axis in periods}
+        run = bench.run(program(DWELLS + "N900 M30\n"))
+        assert run.end() == 0, run.err
+        end = client.state()["cycle"]
+        assert end - begin > 3000
+        for axis, period in periods.items():
+            runs = client.get(f"ax/{axis}/lr_mc_control/timestamp/command_w") - counts[axis]
+            assert runs == end // period - begin // period, axis

@@ -45,6 +45,8 @@ CAMS = TerminalLayout("cams", tuple((f"ch{number}/input", "BOOL", number - 1) fo
 UNIT = "ax/3/lr_mc_control/probing_signal"
 TIME = "ax/3/lr_mc_control/timestamp"
 PATIENCE_S = 30.0
+CYCLES_THAT_FILL = 20_000
+"""Images that no buffer between two processes can hold."""
 
 
 def free_endpoint() -> str:
@@ -196,6 +198,17 @@ def lockstep_plc(endpoint: str, cycles: int) -> list[str]:
             data = sample.payload.to_bytes()
         token.undeclare()
     return wrong
+
+
+NEVER_READS = """
+import sys, zenoh
+from hli_bench.shells.zenoh_session import connect
+
+with connect(sys.argv[1]) as session:
+    subscriber = session.declare_subscriber("demo/hli/image", zenoh.handlers.FifoChannel(1))
+    print("there", flush=True)
+    sys.stdin.read()
+"""
 
 
 def send_commands(endpoint: str, plc: str, messages: list[bytes], *, attach: bool) -> str:
@@ -383,6 +396,18 @@ def test_lockstep_exchanges_2000_cycles_in_order(bench: SmallBench, elsewhere: A
     assert plc.result() == []
     assert bench.server.late == {}
     assert bench.server.refused == 0
+
+
+def test_a_reader_that_never_reads_holds_nobody(bench: SmallBench) -> None:
+    """Images for it are dropped: a put that waited for it would end its link after some seconds."""
+    command = [sys.executable, "-c", NEVER_READS, bench.endpoint]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as reader:
+        assert reader.stdout is not None
+        assert reader.stdout.readline() == "there\n"
+        for _ in range(CYCLES_THAT_FILL):
+            bench.publish(probe=struct.pack("<8xQ8x", bench.cycle + 1))
+        assert bench.server.has_image_subscribers(), "it is still there"
+        reader.kill()
 
 
 def test_answers_to_older_cycles_count_late_and_to_future_ones_not_at_all(

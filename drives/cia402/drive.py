@@ -26,6 +26,7 @@ from hli_bench.protocols.canopen.datatypes import Value
 from hli_bench.protocols.canopen.device import Device
 from hli_bench.protocols.canopen.eds import ObjectDictionary, load
 from hli_bench.protocols.canopen.nmt import NmtState
+from hli_bench.protocols.canopen.sync import SYNC_COB_ID
 from hli_bench.wire.can import CanFrame
 
 STOP_TIMEOUT: Final = Ns(NS_PER_S)
@@ -162,8 +163,8 @@ class Drive:
     def cyclic_signature(self) -> bool:
         """Whether numbers may pass between rows without frames.
 
-        True while the node is OPERATIONAL with the telegram for one of its probing inputs, follows its target
-        and takes touch probe functions as they come.
+        True while the node is OPERATIONAL with the telegram for one of its probing inputs at the usual SYNC,
+        follows its target and takes touch probe functions as they come.
         """
         changes = self.device.pdos.changes
         if changes != self._signature_changes:
@@ -172,9 +173,12 @@ class Drive:
             inputs = [one for one in (0, 1) if configured == telegram.signature(self.node_id, one)]
             self._signature_default = bool(inputs)
             self._row["telegram_input"] = inputs[0] if inputs else 0
-        operational = self.device.nmt.state is NmtState.OPERATIONAL
         return (
-            operational and self._signature_default and not self.holding and self._sources == _DEFAULT_SOURCES
+            self.device.nmt.state is NmtState.OPERATIONAL
+            and self.device.sync_cob_id == SYNC_COB_ID
+            and self._signature_default
+            and not self.holding
+            and self._sources == _DEFAULT_SOURCES
         )
 
     def exchange(self, controlword: int, target: int, probe_function: int, now: Ns) -> int:

@@ -108,6 +108,11 @@ class Device:
         return self.nmt.node_id
 
     @property
+    def sync_cob_id(self) -> int:
+        """The identifier of the SYNC that it acts on (0x1005)."""
+        return self._sync.cob_id
+
+    @property
     def pdos(self) -> PdoSet:
         """The PDOs with their present parameters."""
         return self._pdos

@@ -465,6 +465,10 @@ class TestRowToRow:
         assert not drive.cyclic_signature()
         master.sdo[0x60D0][1].raw = 1
         assert drive.cyclic_signature()
+        master.sdo[0x1005].raw = 0x81
+        assert not drive.cyclic_signature(), "it does not act on the SYNC of the CNC any more"
+        master.sdo[0x1005].raw = 0x80
+        assert drive.cyclic_signature()
         drive.exchange(0x06, 0, 0, Ns(0))
         drive.exchange(0x0F, 0, 0, Ns(0))
         assert drive.cyclic_signature()

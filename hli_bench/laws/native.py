@@ -32,7 +32,7 @@ ENTRIES: Final[Mapping[Entry, int]] = {
     put_segment: 2,
 }
 """Laws that Python calls, and how many of their last parameters change from call to call; the others are bound."""
-COMPILING: Final = "compiling the laws of motion: some seconds, once until laws, numba or processor change"
+COMPILING: Final = "compiling the laws of motion, once until they, numba or the processor change: some 10 s"
 """What to tell people who wait."""
 PLAIN: Final = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 """Laws stay the Python functions that they are."""

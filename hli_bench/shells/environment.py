@@ -4,6 +4,7 @@ import errno
 import os
 import socket
 import sys
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -163,9 +164,13 @@ def compiler_cache(environment: Mapping[str, str] | None = None) -> Finding:
 
 
 def _can_be_written(directory: Path) -> bool:
-    """Return whether files can be made in `directory`, or the directory itself be made."""
+    """Return whether files can be made in `directory`, or the directory itself be made; found by trying."""
     nearest = next(place for place in (directory.absolute(), *directory.absolute().parents) if place.exists())
-    return nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)
+    try:
+        Path(tempfile.mkdtemp(dir=nearest)).rmdir()
+    except OSError:
+        return False
+    return True
 
 
 def _reason(error: OSError) -> str:

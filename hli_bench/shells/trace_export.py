@@ -4,6 +4,7 @@ A table has one row a cycle and axis; `command`, `actual`, `lag` in mm or degree
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
@@ -38,13 +39,10 @@ def csv(reader: TraceReader, out: BinaryIO) -> None:
 
 
 def parquet(reader: TraceReader, out: BinaryIO) -> None:
-    """Write the axes as Parquet. Raises EnvironmentLacks without pyarrow."""
-    try:
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-    except ModuleNotFoundError as error:
-        message = "Parquet needs pyarrow: pip install 'hli-bench[sweep]', or export as csv"
-        raise EnvironmentLacks(message) from error
+    """Write the axes as Parquet."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     writer: Any = None
     waiting: list[Any] = []
     try:
@@ -80,7 +78,12 @@ FORMATS: Final[Mapping[str, Callable[[TraceReader, BinaryIO], None]]] = {
 
 
 def export(reader: TraceReader, form: str, out: Path) -> None:
-    """Write a trace as one of `FORMATS`. Raises OSError when the file cannot be written."""
+    """Write a trace as one of `FORMATS`.
+
+    Raises OSError when the file cannot be written, EnvironmentLacks without pyarrow for Parquet, before it is touched.
+    """
+    if form == "parquet" and find_spec("pyarrow") is None:
+        raise EnvironmentLacks("Parquet needs pyarrow: pip install 'hli-bench[sweep]', or export as csv")
     with out.open("wb") as file:
         FORMATS[form](reader, file)
 

@@ -83,6 +83,7 @@ def test_parquet_without_pyarrow_says_what_is_missing(
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with pytest.raises(EnvironmentLacks, match="pyarrow"):
         export(TraceReader(run / "run.mcap"), "parquet", tmp_path / "run.parquet")
+    assert not (tmp_path / "run.parquet").exists()
 
 
 def test_a_capture_record() -> None:

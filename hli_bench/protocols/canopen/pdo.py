@@ -264,10 +264,11 @@ class Rpdo(_Pdo):
         return True
 
     def on_sync(self) -> None:
-        """Let data received since the last SYNC take effect."""
+        """Let data received since the last SYNC take effect, unless they are too short for a mapping made since."""
         if self._received is not None:
             data, self._received = self._received, None
-            self._apply(data)
+            if len(data) >= self.plan.codec.size:
+                self._apply(data)
 
     def forget(self) -> None:
         """Drop data that wait for a SYNC."""

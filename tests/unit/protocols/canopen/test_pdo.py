@@ -9,10 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hli_bench.base.errors import InputError
+from hli_bench.base.loading import data_file
 from hli_bench.base.time import Ns
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.device import Device
-from hli_bench.protocols.canopen.eds import parse_text
+from hli_bench.protocols.canopen.eds import load, parse_text
 from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame
 from hli_bench.wire.can import CanFrame
 
@@ -259,3 +260,25 @@ def test_broken_default_mapping_is_bad_input(request: Any) -> None:
     text = request.path.with_name("node.eds").read_text().replace("0x20040010", "0x20090010")
     with pytest.raises(InputError, match="0x1A00"):
         Device(parse_text(text), 5)
+
+
+def test_data_received_before_a_longer_mapping_are_left_out() -> None:
+    """Between the RPDO and its SYNC a master maps more than the frame held."""
+    device = Device(load(data_file("eds", "servo402.eds")), 5)
+    device.power_on()
+    device.on_frame(nmt_frame(NmtCommand.START, 5), Ns(0))
+    device.on_frame(CanFrame(0x305, b"\x01\x00"), Ns(0))
+    for index, subindex, kind, value in (
+        (0x1401, 1, "I", 0x8000_0305),
+        (0x1601, 0, "B", 0),
+        (0x1601, 1, "I", 0x60B8_0010),
+        (0x1601, 2, "I", 0x607A_0020),
+        (0x1601, 0, "B", 2),
+        (0x1401, 1, "I", 0x305),
+    ):
+        device.values.download(index, subindex, struct.pack(f"<{kind}", value))
+    device.on_frame(CanFrame(0x80), Ns(1))
+    assert device.values.get(0x60B8) == 0
+    device.on_frame(CanFrame(0x305, b"\x01\x00\x07\x00\x00\x00"), Ns(1))
+    device.on_frame(CanFrame(0x80), Ns(2))
+    assert (device.values.get(0x60B8), device.values.get(0x607A)) == (1, 7)

@@ -17,6 +17,12 @@ DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
 """Where `serve` listens and clients connect unless told otherwise."""
 NO_PLC: Final = "none"
 BUS: Final = re.compile(r"inproc|socketcan:\S+|socketcand:\S+:\d+")
+ENDPOINT: Final = re.compile(
+    r"(?:(?:tcp|udp|ws|tls|quic)/(?:\[[^\s\[\]]+\]|[^\s\[\]:/?#]+):(?P<port>\d{1,5})|unixsock-stream/[^\s?#]+)"
+    r"(?:\?[^\s#]*)?(?:#\S*)?"
+)
+"""PROTOCOL/ADDRESS as Zenoh takes it, with what may follow: `?metadata`, `#config`."""
+LAST_PORT: Final = 65535
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +78,7 @@ def add_bench(parser: argparse.ArgumentParser, *, pace: str, zenoh: str | None) 
     bench.add_argument(
         "--zenoh",
         metavar="ENDPOINT",
+        type=endpoint,
         help=f"where the HLI listens, e.g. {DEFAULT_ENDPOINT} (default {zenoh or 'off'})",
     )
     bench.add_argument("--modbus", metavar="HOST:PORT", help="not built yet: Modbus TCP")
@@ -83,6 +90,7 @@ def add_connect(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--connect",
         metavar="ENDPOINT",
+        type=endpoint,
         default=DEFAULT_ENDPOINT,
         help="where the bench listens (default %(default)s)",
     )
@@ -96,6 +104,17 @@ def bus(text: str) -> str:
     if not BUS.fullmatch(text):
         raise argparse.ArgumentTypeError(
             f"{text!r}: expected inproc, socketcan:INTERFACE or socketcand:HOST:PORT"
+        )
+    return text
+
+
+def endpoint(text: str) -> str:
+    """Return the text of `--zenoh` or `--connect` if it has the form of an endpoint."""
+    found = ENDPOINT.fullmatch(text)
+    if found is None or int(found["port"] or 0) > LAST_PORT:
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: expected PROTOCOL/HOST:PORT, e.g. {DEFAULT_ENDPOINT} "
+            f"(also udp, ws, tls, quic; port up to {LAST_PORT}), or unixsock-stream/FILE"
         )
     return text
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError
-from hli_bench.cli.options import BenchOptions, Commands, add_bench, bench_options, supplied_file
+from hli_bench.cli.options import BenchOptions, Commands, add_bench, bench_options, endpoint, supplied_file
 
 if TYPE_CHECKING:
     from hli_bench.bench.bench import Bench
@@ -64,7 +64,9 @@ def add(commands: Commands) -> None:
     )
     parser.add_argument("program", metavar="PROGRAM.nc", help="a file, or the name of a supplied program")
     add_bench(parser, pace="free", zenoh=None)
-    parser.add_argument("--connect", metavar="ENDPOINT", help="use the bench that listens there")
+    parser.add_argument(
+        "--connect", metavar="ENDPOINT", type=endpoint, help="use the bench that listens there"
+    )
     parser.add_argument(
         "--limit",
         metavar="SECONDS",

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from hli_bench.cli.main import main
+from hli_bench.cli.options import endpoint
 from hli_bench.shells.zenoh_client import HliClient
 
 UNIT = "ax/3/lr_mc_control/probing_signal"
@@ -199,6 +200,40 @@ def test_a_bus_of_another_form_is_named(command: Command, capsys: pytest.Capture
     assert ended.value.code == 2
     expected = "'vcan0': expected inproc, socketcan:INTERFACE or socketcand:HOST:PORT"
     assert expected in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "given",
+    ["foo", "", "127.0.0.1:7447", "tcp/127.0.0.1", "tcp/:7447", "tcp/127.0.0.1:65536", "carrier/me:1"],
+)
+def test_an_endpoint_of_another_form_is_named(
+    command: Command, capsys: pytest.CaptureFixture[str], given: str
+) -> None:
+    for arguments in (
+        *(("serve", "--zenoh"), ("run", "probe.nc", "--zenoh")),
+        *(("run", "probe.nc", "--connect"), ("state", "--connect"), ("plc", "probing.py", "--connect")),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            command(*arguments, given)
+        assert ended.value.code == 2
+        expected = (
+            f"argument {arguments[-1]}: {given!r}: expected PROTOCOL/HOST:PORT, e.g. tcp/127.0.0.1:7447"
+        )
+        assert expected in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        "tcp/[::1]:7447",
+        "udp/bench.local:1",
+        "ws/0.0.0.0:65535",
+        "unixsock-stream//run/bench",
+        "tcp/a:1?rel=1#iface=lo",
+    ],
+)
+def test_whatever_zenoh_takes_is_an_endpoint(given: str) -> None:
+    assert endpoint(given) == given
 
 
 # -- over the net -----------------------------------------------------------------------------------------

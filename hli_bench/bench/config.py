@@ -4,6 +4,7 @@ import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
+from itertools import count, takewhile
 from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple, TypeVar, cast
 
@@ -446,17 +447,25 @@ class _Loader:
     def _numbered(self, table: str) -> list[str]:
         """Return the elements `plc[0]`, `plc[1]` ... in order; none may be missing."""
         found = {path.partition("]")[0] + "]" for path in self.values if path.startswith(f"{table}[")}
-        names = [f"{table}[{number}]" for number in range(len(found))]
-        for name in sorted(found.difference(names)):
-            self._fail(None, f"{name}: {table} has {len(found)} entries, numbered 0..{len(found) - 1}")
-        return [name for name in names if name in found]
+        names = list(takewhile(found.__contains__, (f"{table}[{number}]" for number in count())))
+        entries = f"1 {table} entry" if len(names) == 1 else f"{len(names)} {table} entries"
+        for path, given in self.given.items():
+            name = path.partition("]")[0] + "]"
+            if name in found.difference(names):
+                there = f"the machine has {entries}, so {table}[{len(names)}] is the highest, a new one"
+                self._fail(given, f"{path} = {given.value!r}: there is no {name}; {there}")
+        return names
+
+    def _entry(self, name: str) -> Given:
+        """Return the first value that was given for an entry."""
+        return next(given for path, given in self.given.items() if path.startswith(f"{name}."))
 
     def _plcs(self) -> tuple[PlcConfig, ...]:
         plcs: list[PlcConfig] = []
         for table in self._numbered("plc"):
             script = self._value(f"{table}.script")
             if script is None:
-                self._fail(None, f"{table}.script: is missing")
+                self._fail(self._entry(table), f"{table}.script: is missing")
                 continue
             path = self._script(table, script)
             period_us = self._value(f"{table}.period_us")
@@ -464,7 +473,7 @@ class _Loader:
                 self._check_period(f"{table}.period_us", period_us)
             name = self._value(f"{table}.name") or path.stem
             if name in [plc.name for plc in plcs]:
-                self._fail(None, f"{table}.name: {name!r} is already that of another task")
+                self._fail(self._entry(table), f"{table}.name: {name!r} is already that of another task")
             process = self._value(f"{table}.process")
             plcs.append(PlcConfig(name=name, script=path, period_us=period_us, process=process))
         return tuple(plcs)
@@ -486,7 +495,7 @@ class _Loader:
         for table in self._numbered("fault"):
             kind = self._value(f"{table}.kind")
             if kind is None:
-                self._fail(None, f"{table}.kind: is missing")
+                self._fail(self._entry(table), f"{table}.kind: is missing")
                 continue
             if self._value(f"{table}.when"):
                 raise NotEmulated(f"{table}.when: faults at a condition")

@@ -284,6 +284,8 @@ def _run_connected(program: Path, arguments: argparse.Namespace) -> int:
             result = client.run(text, program.name)
         except KeyboardInterrupt:
             client.reset()
+            where = f"the bench at {arguments.connect}"
+            print(f"stopped: {where} has aborted {program.name} and stays up", file=sys.stderr)
             raise
     for message in result["messages"]:
         print(message["text"], flush=True)

@@ -4,7 +4,8 @@ import gc
 import multiprocessing
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from typing import Any, Final, Protocol, cast
 
@@ -79,7 +80,8 @@ class _Worker:
     def __init__(self, context: Any, job: Job, work: Work) -> None:
         self._pipe, theirs = context.Pipe()
         self._process = context.Process(target=_serve, args=(theirs, job, work), daemon=True)
-        self._process.start()
+        with _interrupts_held():
+            self._process.start()
         theirs.close()
 
     def __enter__(self) -> _Pipe:
@@ -94,6 +96,18 @@ class _Worker:
         if self._process.exitcode is None:
             self._process.kill()
             self._process.join()
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Hold Ctrl-C back; a process that is started here never gets it, from its first instruction on."""
+    # It is started with the first process and would end the holding.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _hand_out(pipe: _Pipe, chunks: Iterator[Sequence[Run]]) -> int:
@@ -114,7 +128,6 @@ def _died() -> EnvironmentLacks:
 
 def _serve(pipe: _Pipe, job: Job, work: Work) -> None:
     """Do chunks until the pipe ends. Ctrl-C is left to the process at the other end."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.collect()
     gc.freeze()
     garbage.seldom()

@@ -1,4 +1,4 @@
-"""How far a campaign is: a bar with the remaining time on a terminal, else a line for every 10 %."""
+"""How far a campaign is: a bar with the remaining time on a terminal, else a line at once and for every 10 %."""
 
 from typing import Final, TextIO
 
@@ -21,6 +21,8 @@ class Progress:
         self._told = before * LINES // total
         if self._bar:
             self._draw()
+        else:
+            self._line()
 
     def add(self, runs: int) -> None:
         """Some more runs are done."""
@@ -30,12 +32,15 @@ class Progress:
             self._draw()
         elif tenth > self._told:
             self._told = tenth
-            print(self._text(), file=self._stream, flush=True)
+            self._line()
 
     def end(self) -> None:
         """Leave the line of the bar."""
         if self._bar:
             print(file=self._stream, flush=True)
+
+    def _line(self) -> None:
+        print(self._text(), file=self._stream, flush=True)
 
     def _draw(self) -> None:
         full = WIDTH * self._done // self._total

@@ -21,21 +21,32 @@ LARGEST_CHUNK: Final = 50
 def run(campaign: Campaign, folder: Path, engine: Engine, workers: int, stream: TextIO) -> int:
     """Do what is left of a campaign, write table and report, and return how many runs were done now.
 
-    Raises InputError for a folder of another campaign and for runs that cannot be.
+    Raises InputError for a folder of another campaign and for runs that cannot be. Ctrl-C is told on `stream`, with
+    what is kept.
     """
     with Store(folder, campaign) as store:
-        done = store.done()
-        rest = [number for number in range(campaign.runs) if number not in done]
-        if rest:
-            progress = Progress(campaign.runs, len(done), stream)
-            try:
-                for chunk in engine.chunks(campaign.job, _chunks(campaign, rest, workers)):
-                    _keep(campaign, store, chunk)
-                    progress.add(len(chunk))
-            finally:
-                progress.end()
-        table = store.finish()
-        (folder / REPORT).write_text(report_html(campaign, table), encoding="utf-8")
+        try:
+            return _run(campaign, store, engine, workers, stream)
+        except KeyboardInterrupt:
+            kept = f"{len(store.done())} of {campaign.runs} runs are kept in {folder}"
+            print(f"stopped: {kept}; the same command goes on from there", file=stream, flush=True)
+            raise
+
+
+def _run(campaign: Campaign, store: Store, engine: Engine, workers: int, stream: TextIO) -> int:
+    """Do what is left, write table and report, and return how many runs were done."""
+    done = store.done()
+    rest = [number for number in range(campaign.runs) if number not in done]
+    if rest:
+        progress = Progress(campaign.runs, len(done), stream)
+        try:
+            for chunk in engine.chunks(campaign.job, _chunks(campaign, rest, workers)):
+                _keep(campaign, store, chunk)
+                progress.add(len(chunk))
+        finally:
+            progress.end()
+    table = store.finish()
+    (store.folder / REPORT).write_text(report_html(campaign, table), encoding="utf-8")
     return len(rest)
 
 

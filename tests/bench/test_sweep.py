@@ -1,11 +1,15 @@
 """Campaigns run whole: same table with every engine, after a kill, and what ends one."""
 
+import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
+
+from hli_bench.sweep import engines
 
 CAMPAIGN = """\
 program = "p.nc"
@@ -63,6 +67,7 @@ def test_every_engine_gives_the_same_bytes(folder, done, options):
 def test_a_killed_campaign_goes_on_where_it_stopped(folder, done):
     first = subprocess.Popen(command(folder, "killed", "--workers", "2"), stderr=subprocess.PIPE, text=True)
     assert first.stderr is not None
+    assert first.stderr.readline() == "0 %, 0 of 48 runs\n"
     line = first.stderr.readline()
     first.kill()
     # The end of the stream is there only when the workers have ended too: none is left behind.
@@ -74,6 +79,35 @@ def test_a_killed_campaign_goes_on_where_it_stopped(folder, done):
     assert f"48 runs, {48 - kept} of them now" in ended.stderr
     assert (folder / "killed" / "runs.parquet").read_bytes() == done
     assert (folder / "killed" / "report.html").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("lines", [1, 2])
+def test_ctrl_c_tells_what_is_kept(folder, done, lines):
+    out = folder / f"stopped after {lines}"
+    campaign = subprocess.Popen(
+        command(folder, out.name, "--workers", "2"), stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    assert campaign.stderr is not None
+    for _ in range(lines):
+        campaign.stderr.readline()
+    os.killpg(campaign.pid, signal.SIGINT)
+    *_, last = said = campaign.communicate()[1].splitlines()
+    assert campaign.returncode == 130
+    kept = sum(pq.read_metadata(part).num_rows for part in (out / "parts").glob("*.parquet"))
+    assert last == f"stopped: {kept} of 48 runs are kept in {out}; the same command goes on from there"
+    assert all(" of 48 runs, " in line for line in said[:-1])
+
+
+def test_ctrl_c_is_not_for_the_workers():
+    """Not even while they start: each would end with a traceback."""
+    (masks,) = engines.LocalProcesses(1, _held).chunks(None, iter([[None]]))
+    assert signal.SIGINT in masks
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def _held(job, runs):
+    """A worker's signals that are held back."""
+    return list(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
 
 
 def test_a_campaign_that_is_done_does_nothing_again(folder, done):

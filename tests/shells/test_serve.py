@@ -174,6 +174,7 @@ def test_ctrl_c_of_run_ends_the_program_and_leaves_the_bench_up(serve: Any, endl
     assert bench.running()
     run.interrupt()
     assert run.end() == 130
+    assert run.err == [f"stopped: the bench at {bench.endpoint} has aborted {endless.name} and stays up"]
     assert bench.state()["state"] == "ready"
 
 

@@ -17,15 +17,16 @@ def test_a_line_for_every_ten_percent():
         progress.add(1)
     progress.end()
     lines = stream.getvalue().splitlines()
-    assert [line.split(",")[0] for line in lines] == [f"{share} %" for share in range(10, 101, 10)]
-    assert all(line.endswith("left") for line in lines[:-1])
+    assert [line.split(",")[0] for line in lines] == [f"{share} %" for share in range(0, 101, 10)]
+    assert lines[0] == "0 %, 0 of 40 runs"
+    assert all(line.endswith("left") for line in lines[1:-1])
     assert lines[-1] == "100 %, 40 of 40 runs"
 
 
 def test_what_was_done_before_is_not_told_again():
     stream = io.StringIO()
     Progress(10, 9, stream).add(1)
-    assert stream.getvalue() == "100 %, 10 of 10 runs\n"
+    assert stream.getvalue() == "90 %, 9 of 10 runs\n100 %, 10 of 10 runs\n"
 
 
 def test_a_bar_on_a_terminal():

@@ -27,6 +27,8 @@ SUFFIXES: Final[Mapping[str, str]] = {
 """Formats of `export` and how their files are named unless told otherwise."""
 EVERY_S: Final = 0.1
 """Distance of the lines of an axis (decided here)."""
+LONG: Final = 200
+"""Lines from which `show` says how to get fewer (decided here)."""
 EQUAL: Final = 0
 DIFFERENT: Final = 1
 FUNCTIONS: Final[Mapping[int, str]] = {
@@ -62,7 +64,9 @@ def add(commands: Commands) -> None:
         "show",
         help="print what a recorded run holds",
         description="Prints what happened in order of time (s, ns since the bench began), axes at intervals "
-        "in mm or degrees and increments. A file that was cut off is shown up to its last chunk.",
+        "in mm or degrees and increments. lag is the command of two cycles earlier, which is the one that this actual "
+        "position answers, minus actual: 0 for a drive that follows exactly, at any velocity. "
+        "A file that was cut off is shown up to its last chunk.",
     )
     show.add_argument("file", metavar="FILE")
     show.add_argument("--channel", choices=CHANNELS, action="append", help="only this one; repeatable")
@@ -139,8 +143,13 @@ def show_trace(arguments: argparse.Namespace) -> int:
         axes=frozenset(arguments.axis or known),
         every=arguments.every,
     )
+    count = 0
     for line in shown(reader, selection):
         print(line)
+        count += 1
+    if count > LONG and not arguments.channel and not arguments.axis:
+        choices = f"--channel ({'|'.join(CHANNELS)}), --axis ({'|'.join(known)})"
+        print(f"{count} lines; fewer with {choices}, --from, --to or a larger --every", file=sys.stderr)
     _warn_if_torn(reader)
     return 0
 

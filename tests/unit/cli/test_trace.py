@@ -45,7 +45,8 @@ def instants(lines: list[str]) -> list[int]:
 def test_show_prints_everything_in_order_of_time(
     traces: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    lines = lines_of(capsys, traces[0])
+    assert main(["trace", "show", str(traces[0])]) == 0
+    lines = capsys.readouterr().out.splitlines()
     head, shown = lines[:5], lines[5:]
     assert head[0].startswith("machine demo, cycle 1000000 ns")
     assert "Z (axis 3, node 3, T)" in head[1]
@@ -56,6 +57,30 @@ def test_show_prints_everything_in_order_of_time(
     seconds, _, at_ns, *_ = edge.split()
     assert f"{int(at_ns) // 1_000_000 / 1000:.3f}" == seconds
     assert edge.endswith("probe TRUE")
+
+
+def test_a_long_show_says_how_to_get_fewer_lines(
+    traces: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["trace", "show", str(traces[0])]) == 0
+    said = capsys.readouterr()
+    assert said.err.startswith(f"{len(said.out.splitlines())} lines; fewer with --channel (meta|axes|")
+    assert "--axis (X|Y|Z|" in said.err
+    assert len(lines_of(capsys, traces[0], "--axis", "Z", "--every", "0.01")) > 200
+    assert lines_of(capsys, traces[0], "--to", "0.1")
+
+
+def test_lag_is_what_the_help_says(traces: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:
+    moving = ("--channel", "axes", "--axis", "X", "--every", "0", "--from", "1", "--to", "1.2")
+    values = [
+        [float(text) for text in line.split()[6:9]] for line in lines_of(capsys, traces[0], *moving)[1:]
+    ]
+    assert abs(values[0][0] - values[0][1]) > 0.01
+    for (earlier, _, _), (_, actual, lag) in zip(values, values[2:], strict=False):
+        assert earlier - actual == pytest.approx(lag, abs=2e-4)
+    with pytest.raises(SystemExit):
+        main(["trace", "show", "--help"])
+    assert "lag is the command of two cycles earlier" in " ".join(capsys.readouterr().out.split())
 
 
 def test_show_of_one_channel_one_axis_some_time(

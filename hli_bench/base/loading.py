@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import shlex
 import sys
 from functools import lru_cache
 from pathlib import Path
@@ -41,6 +42,11 @@ def installed(name: str) -> Path:
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError(f"{name} is not installed")
     return Path(spec.origin)
+
+
+def how_to_install(package: str) -> str:
+    """Return the command that installs a package for the Python that runs here, be it a checkout's or any other."""
+    return f"{shlex.quote(sys.executable)} -m pip install {package}"
 
 
 def script(path: Path) -> ModuleType:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hli_bench.base.errors import EnvironmentLacks
+from hli_bench.base.loading import how_to_install
 from hli_bench.base.units import TENTH_UM_PER_MM
 from hli_bench.shells.bus_file import BusFile, Form
 from hli_bench.shells.candump import Candump
@@ -83,7 +84,7 @@ def export(reader: TraceReader, form: str, out: Path) -> None:
     Raises OSError when the file cannot be written, EnvironmentLacks without pyarrow for Parquet, before it is touched.
     """
     if form == "parquet" and find_spec("pyarrow") is None:
-        raise EnvironmentLacks("Parquet needs pyarrow: pip install 'hli-bench[sweep]', or export as csv")
+        raise EnvironmentLacks(f"Parquet needs pyarrow: {how_to_install('pyarrow')}; or export as csv")
     with out.open("wb") as file:
         FORMATS[form](reader, file)
 

@@ -11,7 +11,7 @@ from typing import Any, Final, Protocol, cast
 
 from hli_bench.base import garbage
 from hli_bench.base.errors import EnvironmentLacks, InputError
-from hli_bench.base.loading import module
+from hli_bench.base.loading import how_to_install, module
 from hli_bench.sweep.work import Failure, Job, Row, Run, code_digest, run_chunk
 
 Chunk = list[Row | Failure]
@@ -155,7 +155,7 @@ class Dask:
         try:
             dask: Any = module("distributed")
         except InputError as error:
-            raise EnvironmentLacks("this engine needs Dask: pip install 'hli-bench[dask]'") from error
+            raise EnvironmentLacks(f"this engine needs Dask: {how_to_install('distributed')}") from error
         with ExitStack() as closing:
             target: Any = self._address
             if target is None:

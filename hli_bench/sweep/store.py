@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from hli_bench.base.errors import EnvironmentLacks, InputError
+from hli_bench.base.loading import how_to_install
 from hli_bench.sweep.campaign import Campaign, kind_of
 from hli_bench.sweep.work import Row, code_digest
 
@@ -16,7 +17,7 @@ try:
     import pyarrow as pa
     import pyarrow.parquet as pq
 except ModuleNotFoundError as error:
-    raise EnvironmentLacks("a sweep needs pyarrow: pip install 'hli-bench[sweep]'") from error
+    raise EnvironmentLacks(f"a sweep needs pyarrow: {how_to_install('pyarrow')}") from error
 
 MANIFEST: Final = "campaign.json"
 TABLE: Final = "runs.parquet"

@@ -1,6 +1,8 @@
 """Campaigns run whole: same table with every engine, after a kill, and what ends one."""
 
+import importlib
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -9,7 +11,8 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from hli_bench.sweep import engines
+from hli_bench.base.errors import EnvironmentLacks
+from hli_bench.sweep import engines, store
 
 CAMPAIGN = """\
 program = "p.nc"
@@ -172,6 +175,20 @@ def test_a_run_that_cannot_be_ends_the_campaign_and_is_named(tmp_path):
 def test_options_that_are_wrong(folder, options, named):
     ended = sweep(folder, "wrong", *options)
     assert (ended.returncode, ended.stderr) == (2, named + "\n")
+
+
+def test_without_pyarrow_or_dask_the_command_that_installs_it_is_told(monkeypatch):
+    install = f"{shlex.quote(sys.executable)} -m pip install"
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "pyarrow", None)
+        without.delitem(sys.modules, store.__name__)
+        with pytest.raises(EnvironmentLacks) as caught:
+            importlib.import_module(store.__name__)
+    assert str(caught.value) == f"a sweep needs pyarrow: {install} pyarrow"
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(EnvironmentLacks) as caught:
+        list(engines.Dask(None, 1).chunks(None, iter(())))
+    assert str(caught.value) == f"this engine needs Dask: {install} distributed"
 
 
 def test_a_scheduler_that_is_not_there(folder):

@@ -81,8 +81,11 @@ def test_parquet_without_pyarrow_says_what_is_missing(
     run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(EnvironmentLacks, match="pyarrow"):
+    monkeypatch.setattr(sys, "executable", "/my clone/.venv/bin/python")
+    with pytest.raises(EnvironmentLacks) as caught:
         export(TraceReader(run / "run.mcap"), "parquet", tmp_path / "run.parquet")
+    command = "'/my clone/.venv/bin/python' -m pip install pyarrow"
+    assert str(caught.value) == f"Parquet needs pyarrow: {command}; or export as csv"
     assert not (tmp_path / "run.parquet").exists()
 
 

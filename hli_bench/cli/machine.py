@@ -45,6 +45,9 @@ def copy_machine(arguments: argparse.Namespace) -> int:
     source, target = machine_folder(machine_name(arguments.machine, "")), Path(arguments.folder)
     try:
         shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+    except FileExistsError as error:
+        message = "is there already and is not written over; choose another folder, or remove it first"
+        raise InputError(message, file=str(target)) from error
     except OSError as error:
         raise InputError(f"cannot be written: {error.strerror}", file=str(target)) from error
     print(f"{target}: copied from {source}; use it with --machine {target}")

@@ -22,7 +22,8 @@ def test_a_machine_is_not_copied_over_what_is_there(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert main(["machine", "copy", "demo", str(tmp_path)]) == 2
-    assert capsys.readouterr().err == f"{tmp_path}: cannot be written: File exists\n"
+    expected = "is there already and is not written over; choose another folder, or remove it first"
+    assert capsys.readouterr().err == f"{tmp_path}: {expected}\n"
     assert not list(tmp_path.iterdir())
 
 

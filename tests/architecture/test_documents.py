@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from hli_bench import Bench
+from hli_bench.cli.main import main
 from hli_bench.kernel.decoder import commands, control, expressions, words
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -87,6 +88,24 @@ def test_a_command_that_is_shown_exists_with_its_options(words: tuple[str, ...])
 @pytest.mark.parametrize("example", _examples(ROOT / "README.md"), ids=lambda text: text.splitlines()[0])
 def test_the_examples_of_the_readme_run(example: str) -> None:
     exec(compile(example, "README.md", "exec"), {})
+
+
+def test_the_traces_of_the_readme_are_as_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    (block,) = [
+        text
+        for text in BLOCK.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+        if "trace diff" in text
+    ]
+    ends, said = [], []
+    for line in block.replace(" out/", f" {tmp_path}/").splitlines():
+        ends.append(main(shlex.split(line.removeprefix(PROMPT))[1:]))
+        said.append(capsys.readouterr().out)
+    assert ends == [0, 0, 0, 1]
+    assert "edges   probe TRUE" in said[2]
+    assert "first difference: edges at 13.110 s" in said[3]
 
 
 def test_the_plc_script_and_the_test_that_the_interfaces_show_work(

@@ -11,6 +11,7 @@ from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.time import NS_PER_S
 from hli_bench.bench import build, state
 from hli_bench.bench.config import MachineConfig, PlcConfig, load
+from hli_bench.bench.faceless import nothing_to_probe
 from hli_bench.bench.plc_ports import LocalPlc
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.bench.standstill import Standstill
@@ -183,13 +184,14 @@ class Bench:
     ) -> Result:
         """Return the result of a program that began behind cycle `first`; what `holding` names held its motion."""
         cycles = self.engine.cycle - first
+        variables, measured = self.kernel.channel.variables(), measurements(self.kernel)
         return Result(
             program=name,
             status=status,
             messages=collector.messages,
             errors=collector.errors,
-            variables=self.kernel.channel.variables(),
-            measurements=measurements(self.kernel),
+            variables=variables,
+            measurements=measured,
             homing=collector.homing,
             sim_s=round(cycles * self.config.cycle_ns * 1e-9, 9),
             wall_s=watch.seconds(),
@@ -197,6 +199,7 @@ class Bench:
             notes=(
                 *(f"motion was held: {element}" for element in holding),
                 *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
+                *nothing_to_probe(self.config, variables, measured, collector.errors),
             ),
             lateness=self._pace.take_part() if self._pace else None,
         )

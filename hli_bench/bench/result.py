@@ -73,7 +73,7 @@ class Result:
     wall_s: float
     cycles: int
     notes: Sequence[str] = ()
-    """What the bench remarks beside the CNC: commands of a PLC that did not count, what held the motion."""
+    """What the bench remarks beside the CNC: commands that did not count, what held the motion, no face to probe."""
     lateness: Lateness | None = None
     """How a bench in real pace kept its cycle meanwhile, None in free pace."""
 

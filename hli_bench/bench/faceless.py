@@ -1,0 +1,46 @@
+"""Notices that a measuring run could not find anything: the plant of this machine has no face for the probe."""
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from hli_bench.bench.config import AxisConfig, MachineConfig
+from hli_bench.bench.result import Error, Measurement
+from hli_bench.kernel.position_controller.measurement import FIXED_STOP_TYPE
+from hli_bench.manual.axis.fallbacks import effective_signal
+from hli_bench.manual.axis.words import ProbingSignal
+from hli_bench.manual.errors.path_interpolator import FIXED_STOP_NOT_FOUND
+from hli_bench.plant.settings import PROBE
+
+RUN_STARTED: Final = ("V.A.MERF", "V.A.MEIN")
+"""Variables that a result has of every axis of a measuring run, whatever came of it."""
+
+
+def nothing_to_probe(
+    config: MachineConfig,
+    variables: Mapping[str, float],
+    found: Sequence[Measurement],
+    errors: Sequence[Error],
+) -> list[str]:
+    """Return a remark for each axis that was to probe, and did not, on a machine that has no face at all.
+
+    Where a face is set on any axis nothing is said: why it was not met, the machine's settings do not tell.
+    """
+    if any(axis.face for axis in config.plant.axes) or any(fault.target == PROBE for fault in config.faults):
+        return []
+    settled = {one.axis for one in found} | {
+        one.axis for one in errors if one.id == FIXED_STOP_NOT_FOUND.number
+    }
+    return [
+        f"axis {axis.name} measured nothing, as the plant has no face: "
+        f"plant.probe.{axis.name}.face_mm and plant.probe.{axis.name}.material set one"
+        for axis in config.axes
+        if axis.name not in settled
+        and all(f"{name}.{axis.name}" in variables for name in RUN_STARTED)
+        and _waits_for_a_face(config, axis)
+    ]
+
+
+def _waits_for_a_face(config: MachineConfig, axis: AxisConfig) -> bool:
+    """Tell whether the event is a touch of the probe and not a fixed stop."""
+    stop = config.channel.messtyp == FIXED_STOP_TYPE or config.channel.meas_fixed_stop_no_error
+    return not stop and effective_signal(axis.params.kenngr) is not ProbingSignal.FIXED_STOP

@@ -1,0 +1,37 @@
+"""A measuring run with nothing in its way: the CNC says what the manual says, the bench what the plant lacks."""
+
+import pytest
+
+from hli_bench import Bench
+
+MEASURES = "N10 G01 G90 Z299 F6000\nN20 G100 Z298 F2000\nN30 M30\n"
+REMARK = (
+    "axis Z measured nothing, as the plant has no face: plant.probe.Z.face_mm and plant.probe.Z.material set one",
+)
+
+
+@pytest.mark.parametrize(("settings", "errors"), [({}, []), ({"channel.meas_error_no_signal": 1}, [50057])])
+def test_a_machine_without_a_face_is_remarked(settings: dict[str, object], errors: list[int]) -> None:
+    with Bench("demo", settings) as bench:
+        result = bench.run(MEASURES)
+    assert [error.id for error in result.errors] == errors
+    assert result.variables["V.A.MERF.Z"] == 0.0
+    assert result.notes == REMARK
+
+
+@pytest.mark.parametrize(
+    ("program", "settings"),
+    [
+        (MEASURES, {"plant.probe.Z.face_mm": 298.5, "plant.probe.Z.material": "below"}),
+        (MEASURES, {"plant.probe.Z.face_mm": 0, "plant.probe.Z.material": "below"}),
+        (MEASURES, {"plant.probe.X.face_mm": -900, "plant.probe.X.material": "below"}),
+        (MEASURES, {"fault": [{"kind": "probe_stuck", "target": "probe", "at_ms": 10**6, "value": 1}]}),
+        (MEASURES, {"axis.Z.kenngr.measure.signal": "FIXED_STOP"}),
+        (MEASURES.replace("N10", "N05 #MEAS MODE[7]\nN10"), {}),
+        (MEASURES.replace("G100", "G01"), {}),
+    ],
+    ids=["met", "not reached", "another axis", "fault", "stop by signal", "stop by type", "no measuring run"],
+)
+def test_what_the_settings_do_not_tell_is_not_remarked(program: str, settings: dict[str, object]) -> None:
+    with Bench("demo", settings) as bench:
+        assert bench.run(program).notes == ()

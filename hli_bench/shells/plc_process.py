@@ -7,11 +7,8 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
-from queue import Empty, SimpleQueue
-from threading import Lock
-from time import monotonic
+from time import monotonic, sleep
 from typing import Any, Final
 
 import zenoh
@@ -21,10 +18,18 @@ from hli_bench.base.errors import BenchError
 from hli_bench.plc import Task, load
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
 from hli_bench.shells.zenoh_client import HliClient
-from hli_bench.shells.zenoh_session import on_network_thread, payload, queued
+from hli_bench.shells.zenoh_session import on_network_thread, payload
 
 RECONNECT_S: Final = 2.0
 """How long a PLC waits for a bench that vanished before it ends; a link comes back in 0.2 s."""
+LOOK_S: Final = 0.02
+WAITING: Final = 100_000
+"""Messages that may wait for a script that dawdles in real pace; with more of them its link to the bench stands."""
+
+DETACHED: Final = b"detached"
+GONE: Final = b"gone"
+HERE: Final = b"here"
+"""News that the session puts to itself, so that they wait in one queue with the images that came before them."""
 
 
 class _Turn:
@@ -75,22 +80,28 @@ class ScriptClient:
         self._period_us = period_us
         self._on_line = on_line
         self._key = f"{client.machine}/plc/{name}"
+        self._image_key = f"{client.machine}/hli/image"
+        self._terminal_keys = f"{client.machine}/io/"
         self._packing = CommandsPacking(client.layout)
-        self._inbox: SimpleQueue[tuple[str, Any]] = SimpleQueue()
         self._io: dict[str, bytes] = {}
-        self._lock = Lock()
-        self._turn: _Turn | None = None
-        """In lock-step: what answers an image on the network thread, without waking this one."""
+        # One queue that Zenoh fills without Python's lock. The script so has a thread to itself, the one that Ctrl-C
+        # interrupts, at no cost: a callback that hands images to a Python queue wakes two threads for each of them.
+        self._inbox: Any = client.session.declare_subscriber(
+            f"{client.machine}/*/*", zenoh.handlers.FifoChannel(WAITING)
+        )
 
     def run(self) -> None:
         """Attach and run until the bench ends. Raises InputError when the script fails or is refused."""
-        session, machine = self._client.session, self._client.machine
+        session = self._client.session
         token = session.liveliness().declare_token(f"{self._key}/alive")
-        for key, kind in ((f"{machine}/io/*", "io"), (f"{machine}/hli/image", "image")):
-            session.declare_subscriber(key, on_network_thread(partial(self._arrived, kind)))
-        session.declare_subscriber(f"{self._key}/detached", queued(self._inbox.put, "detached"))
+        news = session.declare_publisher(self._key, allowed_destination=zenoh.Locality.SESSION_LOCAL)
+        session.declare_subscriber(f"{self._key}/detached", on_network_thread(lambda _: news.put(DETACHED)))
         session.liveliness().declare_subscriber(
-            f"{machine}/bench/alive", queued(self._inbox.put, "alive"), history=True
+            f"{self._client.machine}/bench/alive",
+            on_network_thread(
+                lambda sample: news.put(GONE if sample.kind == zenoh.SampleKind.DELETE else HERE)
+            ),
+            history=True,
         )
         try:
             while self._attached():
@@ -121,80 +132,52 @@ class ScriptClient:
         finally:
             publisher.undeclare()
 
-    def _arrived(self, kind: str, sample: zenoh.Sample) -> None:
-        """Take an image or a terminal on the network thread: act in lock-step, else leave it to `run`."""
-        with self._lock:
-            if self._turn is None:
-                self._inbox.put((kind, sample))
-                return
-            try:
-                self._take(self._turn, kind, sample)
-            except BaseException as error:
-                self._turn = None
-                self._inbox.put(("failed", error))
+    def _in_lock_step(self, turn: _Turn) -> bool:
+        """Answer every image as it comes."""
+        while True:
+            sample = self._inbox.recv()
+            key = str(sample.key_expr)
+            if key == self._image_key:
+                turn.answer(payload(sample), self._io)
+            elif (ended := self._end(key, sample)) is not None:
+                return ended
 
-    def _take(self, turn: "_Turn", kind: str, sample: zenoh.Sample) -> None:
-        """Keep a terminal, answer an image."""
-        if kind == "image":
-            turn.answer(payload(sample), self._io)
-        else:
-            self._keep(sample)
-
-    def _keep(self, sample: zenoh.Sample) -> None:
-        self._io[str(sample.key_expr).rpartition("/")[2]] = payload(sample)
-
-    def _in_lock_step(self, turn: "_Turn") -> bool:
-        """Let every image be answered as it comes; wait for what ends that."""
-        ended: bool | None = None
-        with self._lock:
-            while not self._inbox.empty():
-                kind, message = self._inbox.get()
-                if kind in ("image", "io"):
-                    self._take(turn, kind, message)
-                else:
-                    ended = self._end(kind, message) if ended is None else ended
-            self._turn = turn if ended is None else None
-        while ended is None:
-            ended = self._end(*self._inbox.get())
-        with self._lock:
-            self._turn = None
-        return ended
-
-    def _as_images_come(self, turn: "_Turn") -> bool:
+    def _as_images_come(self, turn: _Turn) -> bool:
         """Answer the newest image each time, with the terminals as of then; the others are left out."""
         newest: tuple[bytes, dict[str, bytes]] | None = None
         while True:
-            if newest is not None and self._inbox.empty():
+            sample = self._inbox.recv() if newest is None else self._inbox.try_recv()
+            if sample is None and newest is not None:
                 turn.answer(*newest)
                 newest = None
-            kind, message = self._inbox.get()
-            if kind == "io":
-                self._keep(message)
-            elif kind == "image":
-                image = payload(message)
+                continue
+            key = str(sample.key_expr)
+            if key == self._image_key:
+                image = payload(sample)
                 newest = (image, dict(self._io)) if turn.due(unpack_image(image)[0]) else newest
-            elif (ended := self._end(kind, message)) is not None:
+            elif (ended := self._end(key, sample)) is not None:
                 return ended
 
-    def _end(self, kind: str, message: Any) -> bool | None:
-        """Return whether to attach anew when a message ends this, None for one that does not."""
-        if kind == "failed":
-            raise message
-        if kind == "detached":
-            return True
-        if message.kind == zenoh.SampleKind.DELETE:
-            return self._bench_is_back()
+    def _end(self, key: str, sample: zenoh.Sample) -> bool | None:
+        """Keep a terminal; return whether to attach anew when a sample ends this, None for one that does not."""
+        if key.startswith(self._terminal_keys):
+            self._io[key.removeprefix(self._terminal_keys)] = payload(sample)
+        elif key == self._key:
+            news = payload(sample)
+            if news == DETACHED:
+                return True
+            if news == GONE:
+                return self._bench_is_back()
         return None
 
     def _bench_is_back(self) -> bool:
         """Tell whether a bench that went away shows up again: then only the link broke, e.g. of a frozen PLC."""
         deadline = monotonic() + RECONNECT_S
-        while (remaining := deadline - monotonic()) > 0:
-            try:
-                kind, sample = self._inbox.get(timeout=remaining)
-            except Empty:
-                break
-            if kind == "alive" and sample.kind == zenoh.SampleKind.PUT:
+        while monotonic() < deadline:
+            sample = self._inbox.try_recv()
+            if sample is None:
+                sleep(LOOK_S)
+            elif str(sample.key_expr) == self._key and payload(sample) == HERE:
                 return True
         return False
 

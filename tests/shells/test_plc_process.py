@@ -19,10 +19,12 @@ from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError, NotE
 from hli_bench.base.loading import data_file
 from hli_bench.bench import door
 from hli_bench.bench.door import result_reply
-from hli_bench.shells.plc_process import main
+from hli_bench.protocols.hli.layout import Layout
+from hli_bench.protocols.hli.packing import IMAGE_HEADER
+from hli_bench.shells.plc_process import ScriptClient, main
 from hli_bench.shells.processes import Deadline, PlcProcess, Worker
 from hli_bench.shells.zenoh_requests import RunProgram
-from hli_bench.shells.zenoh_session import connect
+from hli_bench.shells.zenoh_session import connect, listen, on_network_thread, payload
 
 UNIT = "ax/3/lr_mc_control/probing_signal"
 PLC_STOPPED = 40011
@@ -389,3 +391,103 @@ def test_plcs_inside_and_outside_of_the_process_each_have_their_period(
         for axis, period in periods.items():
             runs = client.get(f"ax/{axis}/lr_mc_control/timestamp/command_w") - counts[axis]
             assert runs == end // period - begin // period, axis
+
+
+STUCK = """
+from hli_bench.plc import Plc
+
+class Stuck(Plc):
+    def cycle(self, hli, io):
+        print("stuck", flush=True)
+        while True:
+            pass
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("pace", ["free", "real"])
+def test_a_script_that_never_returns_is_ended_like_any_other(
+    serve: Any, start: Any, endless: Path, tmp_path: Path, pace: str, number: signal.Signals
+) -> None:
+    script = tmp_path / "stuck.py"
+    script.write_text(STUCK)
+    bench = serve("--plc", "none", "--pace", pace)
+    plc = bench.plc(script)
+    bench.run(endless)
+    assert "is attached" in plc.line()
+    assert plc.line() == "stuck"
+    os.kill(plc.process.pid, number)
+    assert plc.end() == 0, plc.err
+
+
+BOUND = """
+import sqlite3
+from threading import current_thread, get_ident, local, main_thread
+from hli_bench.plc import Plc
+
+OF_THIS_THREAD = local()
+OF_THIS_THREAD.cycles = 0
+
+class Bound(Plc):
+    def __init__(self):
+        self.numbers = sqlite3.connect(":memory:")
+
+    def start(self, hli, io):
+        hli.ax[3].lr_mc_control.timestamp.enable_w = True
+        self.numbers.execute("create table numbers (number)")
+
+    def cycle(self, hli, io):
+        assert current_thread() is main_thread()
+        self.numbers.execute("insert into numbers values (1)")
+        OF_THIS_THREAD.cycles += 1
+        hli.ax[3].lr_mc_control.timestamp.command_w = OF_THIS_THREAD.cycles
+"""
+
+
+@pytest.mark.parametrize("pace", ["free", "real"])
+def test_all_of_a_script_happens_in_one_thread(serve: Any, program: Any, tmp_path: Path, pace: str) -> None:
+    script = tmp_path / "bound.py"
+    script.write_text(BOUND)
+    bench = serve("--plc", "none", "--pace", pace)
+    plc = bench.plc(script)
+    run = bench.run(program("N10 G04 0.3\nN20 M30\n"))
+    assert run.end() == 0, (run.err, plc.err)
+    with bench.client() as client:
+        assert client.get("ax/3/lr_mc_control/timestamp/command_w") > 0
+    assert plc.process.poll() is None, plc.err
+
+
+class _HandedOut:
+    """What a client asks: the first to attach is let go of between two images, the next is turned away."""
+
+    def __init__(self, session: Any) -> None:
+        self.session = session
+        self.machine, self.endpoint = "by_hand", "nowhere"
+        self.layout, self.terminals = Layout(()), ()
+        self._attached = 0
+
+    def ask_packed(self, path: str, question: str) -> bytes:
+        self._attached += 1
+        if self._attached == 2:
+            raise InputError("turned away")
+        for key, message in (
+            ("hli/image", IMAGE_HEADER.pack(7, 0)),
+            ("plc/hand/detached", b""),
+            ("hli/image", IMAGE_HEADER.pack(8, 0)),
+        ):
+            self.session.put(f"{self.machine}/{key}", message)
+        return json.dumps({"cycle": 7, "cycle_us": 1000, "period_us": 1000, "lockstep": True}).encode()
+
+
+def test_images_behind_the_end_of_an_attachment_are_not_answered(endpoint: str, tmp_path: Path) -> None:
+    script = tmp_path / "idle.py"
+    script.write_text("class Idle:\n    period_us = 1000\n    def cycle(self, hli, io):\n        pass\n")
+    answered: list[int] = []
+    with listen(endpoint) as session:
+        session.declare_subscriber(
+            "by_hand/plc/hand/commands",
+            on_network_thread(lambda sample: answered.append(int.from_bytes(payload(sample), "little"))),
+        )
+        with pytest.raises(InputError, match="turned away"):
+            ScriptClient(_HandedOut(session), script, "hand").run()
+    assert answered == [7]

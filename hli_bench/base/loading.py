@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import json
 import shlex
 import sys
 from functools import lru_cache
@@ -11,6 +12,10 @@ from types import CodeType, ModuleType
 from hli_bench.base.errors import InputError
 
 _PACKAGE = Path(__file__).resolve().parent.parent
+_CHILD = (
+    "import json, runpy, sys; sys.path[:] = json.loads(sys.argv.pop(1)); "
+    "runpy.run_module(sys.argv.pop(1), run_name='__main__', alter_sys=True)"
+)
 
 
 @lru_cache(maxsize=256)
@@ -36,6 +41,15 @@ def module(name: str) -> ModuleType:
         raise
 
 
+def child_command(name: str, *arguments: str) -> list[str]:
+    """Return the command that runs a module as a process of its own, which finds modules where this one does.
+
+    `python -m` would look in the current directory before, where a user's `can.py` or `zenoh.py` may lie.
+    """
+    path = [place for place in sys.path if isinstance(place, str)]
+    return [sys.executable, "-P", "-c", _CHILD, json.dumps(path), name, *arguments]
+
+
 def installed(name: str) -> Path:
     """Return the file of an installed package without importing it."""
     spec = importlib.util.find_spec(name)
@@ -52,6 +66,7 @@ def how_to_install(package: str) -> str:
 def script(path: Path) -> ModuleType:
     """Load a user's Python file as a module of its own. Raises InputError when it cannot be read.
 
+    It may import what lies beside it; behind all other places, so that no name there hides a module of ours.
     Always from its text: byte code that Python keeps beside it counts as fresh when the file is changed to one of the
     same size within a second, as scripts made by tests are.
     """
@@ -61,6 +76,9 @@ def script(path: Path) -> ModuleType:
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None:
         raise InputError("not a Python file", file=str(path))
+    folder = str(path.resolve().parent)
+    if folder not in sys.path:
+        sys.path.append(folder)
     loaded = importlib.util.module_from_spec(spec)
     sys.modules[name] = loaded
     exec(_compiled(path.read_bytes(), path), vars(loaded))

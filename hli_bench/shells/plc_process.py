@@ -15,6 +15,7 @@ import zenoh
 
 from hli_bench.base import garbage
 from hli_bench.base.errors import BenchError
+from hli_bench.base.loading import child_command
 from hli_bench.plc import Task, load
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
 from hli_bench.shells.zenoh_client import HliClient
@@ -209,7 +210,7 @@ def start(
     It has a process group of its own: Ctrl-C is for the process that starts it and ends it.
     """
     arguments = [str(script), endpoint, name, *([] if period_us is None else [str(period_us)])]
-    command = [sys.executable, "-m", "hli_bench.shells.plc_process", *arguments]
+    command = child_command("hli_bench.shells.plc_process", *arguments)
     return subprocess.Popen(command, process_group=0)
 
 

@@ -12,6 +12,7 @@ from time import monotonic
 from typing import Final, Self
 
 from hli_bench.base.errors import BenchError, EnvironmentLacks
+from hli_bench.base.loading import child_command
 from hli_bench.shells import plc_process
 
 _LENGTH: Final = struct.Struct("<I")
@@ -149,7 +150,7 @@ class Worker:
     def __init__(self, module: str, arguments: Sequence[str], answer_s: float = ANSWER_S) -> None:
         """Start it; it must answer within `answer_s`, the first time within START_S."""
         ours, theirs = socket.socketpair()
-        command = [sys.executable, "-m", module, str(theirs.fileno()), *arguments]
+        command = child_command(module, str(theirs.fileno()), *arguments)
         self._process = subprocess.Popen(
             command, pass_fds=[theirs.fileno()], stdin=subprocess.DEVNULL, process_group=0
         )

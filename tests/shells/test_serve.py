@@ -212,6 +212,27 @@ def test_a_worker_that_dies_ends_the_bench(serve: Any) -> None:
     assert bench.command.nothing_left()
 
 
+@pytest.mark.parametrize("pace", ["free", "real"])
+def test_modules_in_the_current_directory_are_none_of_the_bench(
+    serve: Any, probe: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, pace: str
+) -> None:
+    """But a script finds what lies beside it."""
+    for name in ("can", "zenoh", "numpy", "json", "runpy"):
+        (tmp_path / f"{name}.py").write_text("raise RuntimeError('a file of the user')\n")
+    (tmp_path / "beside.py").write_text((SCRIPTS / "demo.py").read_text())
+    (tmp_path / "mine.py").write_text("import beside\n\nclass Mine(beside.Demo):\n    pass\n")
+    monkeypatch.chdir(tmp_path)
+    own = ("--plc", "mine.py", "--set", "plc.0.process=true")
+    bench = serve("--pace", pace, *own)
+    run = bench.run(probe)
+    assert run.end() == 0, (run.err, bench.command.err)
+    assert run.out == MEASURED
+    assert bench.plcs() == ["mine"]
+    bench.command.interrupt()
+    assert bench.command.end() == 0
+    assert not bench.command.err
+
+
 def _runs(pid: int, module: str) -> bool:
     return module.encode() in Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
 

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 LAWS_FOLDER: Final = Path(__file__).parent
+FILES: Final = 4
+"""Files that stay in a place: this text of the laws and some that other environments and branches may still use."""
 
 
 class Code(NamedTuple):
@@ -22,13 +24,14 @@ class Code(NamedTuple):
 def places(environment: Mapping[str, str] = os.environ) -> list[Path]:
     """Return the directories that may hold the file: NUMBA_CACHE_DIR, or the user's cache, then beside the laws.
 
-    The user's cache is still there when the environment is made anew.
+    The user's cache is still there when the environment is made anew; who has no home has none.
     """
     chosen = environment.get("NUMBA_CACHE_DIR")
     if chosen:
         return [Path(chosen)]
-    users = environment.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
-    return [Path(users) / "hli-bench", LAWS_FOLDER / "__pycache__"]
+    beside = LAWS_FOLDER / "__pycache__"
+    users = environment.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111 - raises nothing
+    return [beside] if users.startswith("~") else [Path(users) / "hli-bench", beside]
 
 
 def file_name(*made_by: str) -> str:
@@ -40,25 +43,38 @@ def file_name(*made_by: str) -> str:
 
 
 def read(name: str) -> Code | None:
-    """Return what an earlier run has kept, None when there is nothing or a part of it only."""
+    """Return what an earlier run has kept, None when there is nothing or what is there is damaged."""
     for place in places():
         try:
-            head, data = (place / name).read_bytes().split(b"\n", 1)
-            about = json.loads(head)
+            return _unpacked((place / name).read_bytes())
         except (OSError, ValueError):
             continue
-        if about["sha256"] == sha256(data).hexdigest():
-            return Code(about["symbols"], data)
     return None
 
 
 def keep(name: str, code: Code) -> None:
     """Keep machine code in the first place that can be written; where none can, every process compiles anew."""
-    about = {"symbols": code.symbols, "sha256": sha256(code.data).hexdigest()}
+    content = _packed(code)
     for place in places():
         with suppress(OSError):
-            _put(place, name, json.dumps(about).encode() + b"\n" + code.data)
+            _put(place, name, content)
+            _thin_out(place, name)
             return
+
+
+def _packed(code: Code) -> bytes:
+    """Return the file: a digest of all that follows, the symbols as a line of JSON, the object file."""
+    body = json.dumps(code.symbols).encode() + b"\n" + code.data
+    return sha256(body).hexdigest().encode() + b"\n" + body
+
+
+def _unpacked(content: bytes) -> Code:
+    """Return what `_packed` was given. Raises ValueError for any other content."""
+    digest, body = content.split(b"\n", 1)
+    if digest != sha256(body).hexdigest().encode():
+        raise ValueError("damaged")
+    symbols, data = body.split(b"\n", 1)
+    return Code(json.loads(symbols), data)
 
 
 def _put(place: Path, name: str, content: bytes) -> None:
@@ -70,6 +86,21 @@ def _put(place: Path, name: str, content: bytes) -> None:
             file.write(content)
         Path(path).chmod(0o644)  # beside the laws it serves everybody who uses this installation
         Path(path).replace(place / name)
-    except OSError:
+    except BaseException:
         Path(path).unlink(missing_ok=True)
         raise
+
+
+def _thin_out(place: Path, name: str) -> None:
+    """Remove all but the newest files of a place, never `name`.
+
+    Whoever needs one of the others has read it as a whole or compiles anew; it may go at any moment.
+    """
+    others = []
+    for file in place.glob("laws-*.bin"):
+        with suppress(OSError):
+            others.append((file.stat().st_mtime_ns, file))
+    others = sorted(one for one in others if one[1].name != name)
+    for _, file in others[: max(0, len(others) - (FILES - 1))]:
+        with suppress(OSError):
+            file.unlink()

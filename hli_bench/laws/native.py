@@ -134,13 +134,26 @@ def target_machine(llvm: Any) -> Any:
 
 
 def _load(llvm: Any, code: cache.Code) -> None:
-    """Load an object file and take its entries."""
+    """Load an object file and take its entries. Raises LookupError when it lacks one.
+
+    They let go of Python's lock while they run: a stride may take many ms, and the threads of Zenoh and CAN go on.
+    """
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), target_machine(llvm))
     _ENGINES.append(engine)
     engine.add_object_file(llvm.ObjectFileRef.from_data(code.data))
     engine.finalize_object()
+    functions: dict[str, Entry] = {}
     for entry, changing in ENTRIES.items():
         kinds = list(parameters(entry).values())
         kinds = kinds[len(kinds) - changing :]
         prototype = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, *(_C_TYPES[kind] for kind in kinds))
-        _FUNCTIONS[entry.__name__] = prototype(engine.get_function_address(code.symbols[entry.__name__]))
+        functions[entry.__name__] = prototype(_address(engine, code.symbols[entry.__name__]))
+    _FUNCTIONS.update(functions)
+
+
+def _address(engine: Any, symbol: str) -> int:
+    """Return where a function lies: to call address 0, which the engine gives for none, would end the process."""
+    address: int = engine.get_function_address(symbol)
+    if not address:
+        raise LookupError(f"no {symbol} in the machine code of the laws")
+    return address

@@ -1,14 +1,16 @@
 """Machine code of the laws: bound to rows, kept between runs, made again when what it comes from is another."""
 
 import os
+import pwd
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hli_bench.laws import cache
+from hli_bench.laws import cache, native
 from hli_bench.laws.native import bind, prepare
 from hli_bench.laws.rows import AXIS, SERVO
 from hli_bench.laws.stride import exchange_out
@@ -99,3 +101,88 @@ def test_nothing_is_kept_where_nothing_can_be_written(
     cache.keep("laws.bin", cache.Code({}, b""))
     assert cache.read("laws.bin") is None
     prepare()
+
+
+KEPT = cache.Code({"stride": "_ZN6stride"}, b"object\ncode")
+
+
+def test_who_has_no_home_keeps_the_laws_beside_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("HOME", raising=False)
+    monkeypatch.setattr(pwd, "getpwuid", {}.__getitem__)
+    assert cache.places({}) == [cache.LAWS_FOLDER / "__pycache__"]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda content: content.replace(b'"stride"', b'"strike"'),
+        lambda content: content.replace(b"code", b"cold"),
+        lambda content: content[:-1],
+        lambda content: content.partition(b"\n")[2],
+        lambda content: b"{}\n" + content,
+        lambda _: b"[]\nobject",
+        lambda _: b"\n",
+        lambda _: b"",
+    ],
+)
+def test_a_damaged_file_is_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[bytes], bytes]
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    cache.keep("laws-a.bin", KEPT)
+    assert cache.read("laws-a.bin") == KEPT
+    (tmp_path / "laws-a.bin").write_bytes(damage((tmp_path / "laws-a.bin").read_bytes()))
+    assert cache.read("laws-a.bin") is None
+
+
+def test_nothing_is_left_of_a_file_that_was_interrupted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(Path, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        cache.keep("laws-a.bin", KEPT)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_newest_files_stay_and_the_one_in_use(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    for number in range(7):
+        (tmp_path / f"laws-{number}.bin").write_bytes(b"")
+        os.utime(tmp_path / f"laws-{number}.bin", (2e9 + number, 2e9 + number))
+    (tmp_path / "another.bin").write_bytes(b"")
+    cache.keep("laws-used.bin", KEPT)
+    left = {file.name for file in tmp_path.iterdir()}
+    assert left == {"another.bin", "laws-used.bin", "laws-4.bin", "laws-5.bin", "laws-6.bin"}
+    assert cache.read("laws-used.bin") == KEPT
+
+
+def test_several_processes_may_thin_out_the_same_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What another one has removed already is no error."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    for number in range(7):
+        (tmp_path / f"laws-{number}.bin").write_bytes(b"")
+    there = Path.glob
+
+    def overtaken(place: Path, pattern: str) -> list[Path]:
+        found = list(there(place, pattern))
+        (tmp_path / "laws-0.bin").unlink()
+        return found
+
+    monkeypatch.setattr(Path, "glob", overtaken)
+    cache.keep("laws-used.bin", KEPT)
+    assert cache.read("laws-used.bin") == KEPT
+
+
+def test_code_without_a_law_is_not_called() -> None:
+    class Empty:
+        def get_function_address(self, symbol: str) -> int:
+            return 0
+
+    with pytest.raises(LookupError, match="no _ZN6stride"):
+        native._address(Empty(), "_ZN6stride")

@@ -133,9 +133,6 @@ def test_commands_find_their_data(command: Command, arguments: tuple[str, ...], 
 PREPARE = "from hli_bench.laws.native import prepare; prepare(lambda: print('compiling'))"
 
 
-PREPARE = "from hli_bench.laws.native import prepare; prepare(lambda: print('compiling'))"
-
-
 def test_the_compiled_laws_are_kept_in_the_home_and_survive_a_new_installation(
     installed: Path, command: Command, tmp_path: Path
 ) -> None:

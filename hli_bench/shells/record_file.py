@@ -7,7 +7,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
@@ -93,11 +93,20 @@ def uninterrupted() -> Iterator[None]:
         yield
         return
     came: list[int] = []
-    before = {number: signal.signal(number, lambda which, _: came.append(which)) for number in INTERRUPTS}
-    try:
+    with ExitStack() as behind:
+        behind.callback(_deliver, came)
+        for number in INTERRUPTS:
+            behind.callback(signal.signal, number, signal.getsignal(number))
+        for number in INTERRUPTS:
+            signal.signal(number, lambda which, _: came.append(which))
         yield
+
+
+def _deliver(came: list[int]) -> None:
+    """Let each signal that came take effect, also behind one whose handler raises."""
+    try:
+        while came:
+            signal.raise_signal(came.pop(0))
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        for which in dict.fromkeys(came):
-            signal.raise_signal(which)
+        if came:
+            _deliver(came)

@@ -20,7 +20,7 @@ from hli_bench.cli.main import main
 from hli_bench.laws.rows import LOG_CYCLES
 from hli_bench.runtime.engine import Observer
 from hli_bench.shells.processes import Pipe, framed
-from hli_bench.shells.record_file import RecordFile, uninterrupted
+from hli_bench.shells.record_file import INTERRUPTS, RecordFile, uninterrupted
 from hli_bench.shells.recorder import BATCH, Handover, Outbox, What, record
 from hli_bench.shells.trace_file import BLOCK_CYCLES, AxesBlock, TraceEvent, TraceReader, read
 from hli_bench.wire.can import CanFrame
@@ -283,6 +283,53 @@ def test_an_interrupt_waits_until_a_piece_is_written(number: int) -> None:
     finally:
         signal.signal(number, before)
     assert done == [number]
+
+
+@pytest.fixture
+def delivered() -> Iterator[list[int]]:
+    """Handlers that tell which signals they got, and raise."""
+    got: list[int] = []
+
+    def handler(number: int, _: object) -> None:
+        got.append(number)
+        raise KeyboardInterrupt
+
+    before = {number: signal.signal(number, handler) for number in INTERRUPTS}
+    yield got
+    for number, one in before.items():
+        signal.signal(number, one)
+
+
+def test_of_several_signals_none_is_lost(delivered: list[int]) -> None:
+    def piece() -> None:
+        with uninterrupted():
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGINT):
+                signal.raise_signal(number)
+            assert not delivered
+
+    with pytest.raises(KeyboardInterrupt):
+        piece()
+    assert delivered == [signal.SIGINT, signal.SIGTERM, signal.SIGINT]
+
+
+def test_a_signal_before_both_handlers_stand_leaves_neither(
+    delivered: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install, before = signal.signal, [signal.getsignal(number) for number in INTERRUPTS]
+
+    def interrupted(number: int, handler: Any) -> Any:
+        monkeypatch.undo()
+        install(number, handler)
+        signal.raise_signal(signal.SIGTERM)
+
+    def piece() -> None:
+        with uninterrupted():
+            pytest.fail("begun")
+
+    monkeypatch.setattr(signal, "signal", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        piece()
+    assert [signal.getsignal(number) for number in INTERRUPTS] == before
 
 
 def started(folder: Path, pace: str) -> "subprocess.Popen[str]":

@@ -9,7 +9,7 @@ stop is over when the axis does, at the latest after STOP_TIMEOUT (decided here)
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
-from functools import cache, partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -17,10 +17,19 @@ from drives.cia402 import objects, telegram
 from drives.cia402.faults import Fault, error_register
 from drives.cia402.modes import is_supported
 from drives.cia402.objects import ObjectAddress
-from drives.cia402.states import ENABLE_OPERATION, ControlBit, State, StatusBit, Transition, walk
+from drives.cia402.states import (
+    ENABLE_OPERATION,
+    ControlBit,
+    State,
+    StatusBit,
+    Transition,
+    next_transition,
+    walk,
+)
 from drives.cia402.touch_probe import ProbeSource, resolve_source
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import NS_PER_S, Ns
+from hli_bench.laws.rows import cell
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.datatypes import Value
 from hli_bench.protocols.canopen.device import Device
@@ -88,13 +97,17 @@ class Drive:
         "_deadline",
         "_destination",
         "_fault",
+        "_flags",
+        "_law_fault",
         "_now",
         "_options",
+        "_probe_function",
         "_probe_word",
         "_row",
         "_signature_changes",
         "_signature_default",
         "_sources",
+        "_target",
         "_word",
         "device",
         "name",
@@ -106,6 +119,10 @@ class Drive:
         self.device = device
         self.state = State.SWITCH_ON_DISABLED
         self._row = row
+        self._target = cell(row, "target")
+        self._probe_function = cell(row, "probe_function")
+        self._flags = cell(row, "status_flags")
+        self._law_fault = cell(row, "fault")
         self._options = options
         self._now = Ns(0)
         self._signature_changes = -1
@@ -123,7 +140,7 @@ class Drive:
     @property
     def statusword(self) -> int:
         """Object 0x6041: state, voltage and remote, and the bits that the law computes."""
-        return int(self.state) | _ALWAYS | (int(self._row["status_flags"]) & _LAW_FLAGS)
+        return int(self.state) | _ALWAYS | (self._flags[0] & _LAW_FLAGS)
 
     @property
     def holding(self) -> bool:
@@ -207,9 +224,9 @@ class Drive:
         self._now = now
         if self._destination is not None and (self._stands() or now >= self._deadline):
             self._enter(self._destination)
-        code = int(self._row["fault"])
+        code = self._law_fault[0]
         if code == Fault.FOLLOWING_ERROR and self._options.following_error is FollowingErrorReaction.STATUS:
-            self._row["fault"] = 0
+            self._law_fault[0] = 0
         elif code:
             self.fault(code)
 
@@ -277,10 +294,10 @@ class Drive:
             objects.DIGITAL_INPUTS: "digital_inputs",
             objects.ENCODER_INCREMENTS: "increments_per_turn",
         }
-        sources |= {address: partial(_number, row, name) for address, name in names.items()}
+        sources |= {address: _reader(row, name) for address, name in names.items()}
         for slot, (position, time) in enumerate(zip(objects.LATCHES, objects.LATCH_TIMES, strict=True)):
-            sources[position] = partial(_element, row, "latch", slot)
-            sources[time] = partial(_element, row, "latch_time", slot)
+            sources[position] = _reader(row, "latch", slot)
+            sources[time] = _reader(row, "latch_time", slot)
         for address, source in sources.items():
             self.device.values.on_read(*address, source)
 
@@ -302,9 +319,11 @@ class Drive:
 
     def _write_controlword(self, value: Value) -> None:
         """Run the state machine; the same word again changes nothing."""
-        word = int(value)
+        word, before = int(value), self._word
+        if word == before and self._destination is None and next_transition(self.state, word, word) is None:
+            return
         was_holding = self.holding
-        before, self._word = self._word, word
+        self._word = word
         if self.state is State.OPERATION_ENABLED and word & ENABLE_OPERATION == ENABLE_OPERATION:
             self._destination = None
         for row in walk(self.state, word, before):
@@ -366,7 +385,7 @@ class Drive:
     def _write_target(self, value: Value) -> None:
         """Follow the target unless the drive holds."""
         if not self.holding:
-            self._row["target"] = value
+            self._target[0] = int(value)
 
     def _write_mode(self, value: Value) -> None:
         if not is_supported(int(value), self._option(objects.SUPPORTED_MODES)):
@@ -379,11 +398,11 @@ class Drive:
 
     def _write_probe_function(self, value: Value) -> None:
         self._probe_word = int(value)
-        self._row["probe_function"] = resolve_source(self._probe_word, self._sources)
+        self._probe_function[0] = resolve_source(self._probe_word, self._sources)
 
     def _read_probe_function(self) -> int:
         """Return the word as written, or what came row to row since."""
-        present = int(self._row["probe_function"])
+        present = self._probe_function[0]
         as_written = present == resolve_source(self._probe_word, self._sources)
         return self._probe_word if as_written else present
 
@@ -393,7 +412,7 @@ class Drive:
             raise SdoAbort(AbortCode.RANGE)
         first, second = self._sources
         self._sources = (int(value), second) if slot == 0 else (first, int(value))
-        self._row["probe_function"] = resolve_source(self._probe_word, self._sources)
+        self._probe_function[0] = resolve_source(self._probe_word, self._sources)
 
     def _option(self, address: ObjectAddress) -> int:
         return self.device.values.number(*address)
@@ -407,7 +426,7 @@ def create(name: str, node_id: int, eds_path: Path, row: Any, options: Mapping[s
     return Drive(name, Device(description, node_id), row, checked)
 
 
-@cache
+@lru_cache(maxsize=64)
 def _check(description: ObjectDictionary, eds_path: Path) -> None:
     """Raise InputError when an EDS lacks what the profile needs."""
     for index, subindex in objects.ALL:
@@ -416,12 +435,8 @@ def _check(description: ObjectDictionary, eds_path: Path) -> None:
             raise InputError(message, file=str(eds_path))
 
 
-def _number(row: Any, name: str) -> int:
-    return int(row[name])
-
-
-def _element(row: Any, name: str, slot: int) -> int:
-    return int(row[name][slot])
+def _reader(row: Any, name: str, element: int = 0) -> Callable[[], int]:
+    return partial(cell(row, name, element).__getitem__, 0)
 
 
 def _store(row: Any, name: str, value: Value) -> None:

@@ -12,7 +12,7 @@ from hli_bench.kernel.core import Core
 from hli_bench.kernel.decoder import Decoder, DecoderAxis, DecoderDefaults
 from hli_bench.kernel.drive_manager import start_up
 from hli_bench.kernel.drive_manager.objects import ObjectChannel
-from hli_bench.kernel.drive_manager.telegram import ActualTelegrams, command_frames
+from hli_bench.kernel.drive_manager.telegram import ActualTelegrams, CommandTelegrams
 from hli_bench.kernel.hindrances import holding, in_vain, unheard
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.records import Emitted
@@ -42,7 +42,9 @@ class Kernel:
         units = ControlUnits(self.image, defaults)
         self.core = Core.build(setup, self.image, units)
         self._objects = ObjectChannel(axis.node for axis in setup.axes)
-        self._telegrams = ActualTelegrams([axis.node for axis in setup.axes], self.core.rows.axis)
+        nodes = [axis.node for axis in setup.axes]
+        self._actual = ActualTelegrams(nodes, self.core.rows.axis)
+        self._commands = CommandTelegrams(nodes, self.core.rows.axis)
         self._monitoring = Monitoring(self.core)
         self.channel = Channel(self.core, self._objects, self._monitoring)
         self._starting: dict[AxisIndex, Sequence[start_up.Drive]] = {}
@@ -67,7 +69,7 @@ class Kernel:
     @property
     def telegram_ids(self) -> frozenset[int]:
         """COB-IDs of the telegrams that every cycle brings."""
-        return self._telegrams.cob_ids
+        return self._actual.cob_ids
 
     def begin_start_up(self) -> None:
         """Begin to bring all drives into operation."""
@@ -85,14 +87,11 @@ class Kernel:
 
     def take_frames(self, frames: Iterable[CanFrame]) -> bool:
         """Take what the bus brought at this SYNC; tell whether any of it needs a decision."""
-        decide = False
-        for frame in frames:
-            if self._telegrams.take(frame):
-                continue
-            decide = True
+        others = self._actual.take(frames)
+        for frame in others:
             self.core.frames += self._objects.on_frame(frame, self.core.now)
             self._monitoring.emergency(frame)
-        return decide
+        return bool(others)
 
     def decide(self) -> None:
         """Decide what comes next: called between `sense` and `act`, `core.cycle` being the cycle."""
@@ -116,12 +115,7 @@ class Kernel:
 
     def cyclic_frames(self) -> list[CanFrame]:
         """Return the command telegrams of this cycle, in identifier order."""
-        frames = [
-            frame
-            for axis in self.setup.axes
-            for frame in command_frames(axis.node, self.core.rows.axis[axis.index])
-        ]
-        return sorted(frames, key=lambda frame: frame.cob_id)
+        return self._commands.frames()
 
     def take_emitted(self) -> list[Emitted]:
         """Return what was emitted since the last call."""

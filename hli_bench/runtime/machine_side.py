@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from operator import is_
+from operator import attrgetter, is_
 from typing import Any, Final, Protocol
 
 import numpy as np
@@ -22,6 +22,7 @@ SYNC: Final = CanFrame(0x80)
 NOT_KNOWN: Final = -1
 FAR: Final = 1 << 40
 """More cycles than any run has."""
+_BY_COB_ID: Final = attrgetter("cob_id")
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +161,8 @@ class MachineSide:
         for drive in self.drives:
             frames += drive.tick(now)
         self._due, self._ticked, self._words = NOT_KNOWN, cycle, b""
-        return sorted(frames, key=lambda frame: frame.cob_id)
+        frames.sort(key=_BY_COB_ID)
+        return frames
 
     def _listen(self) -> None:
         """Find out anew who hears which identifier."""
@@ -204,9 +206,7 @@ class MachineSide:
         self._due, self._ticked = NOT_KNOWN, cycle
         now = Ns(cycle * self.cycle_ns)
         self._force(now)
-        return sorted(
-            (frame for drive in self.drives for frame in drive.tick(now)), key=lambda one: one.cob_id
-        )
+        return sorted((frame for drive in self.drives for frame in drive.tick(now)), key=_BY_COB_ID)
 
     def quiet(self, cycle: int) -> int:
         """Return for how many cycles from `cycle` on only telegrams pass; `timers` has to be asked in the last."""

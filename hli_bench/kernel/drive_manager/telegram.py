@@ -1,23 +1,18 @@
 """The cyclic telegrams of a drive as the CNC sends and takes them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from struct import Struct
-from typing import Any, Final
+from typing import Final
 
 from hli_bench.base.ids import NodeId
-from hli_bench.laws.rows import Rows
+from hli_bench.laws.rows import Rows, cell
 from hli_bench.protocols.canopen.pdo import INVALID, MAPPING_OFFSET, NO_RTR, TPDO_COMMUNICATION
-from hli_bench.protocols.canopen.telegram import RPDOS, TPDOS, Telegram, changed, frames
+from hli_bench.protocols.canopen.telegram import RPDOS, TPDOS, Telegram, changed
 from hli_bench.wire.can import CanFrame
 
 _LONG: Final = Struct("<I")
 _HERE: Final = {"position": "received"}
 """Numbers that have another name in the CNC's rows: what came is not yet the actual position."""
-
-
-def command_frames(node: NodeId, row: Any) -> list[CanFrame]:
-    """Return the command telegrams of one axis from its row."""
-    return frames(RPDOS, node, row)
 
 
 def second_input_telegrams(node: NodeId) -> list[tuple[int, int, bytes]]:
@@ -36,37 +31,64 @@ def second_input_telegrams(node: NodeId) -> list[tuple[int, int, bytes]]:
     return writes
 
 
-class ActualTelegrams:
-    """Takes TPDOs into the axis rows; a frame of another length than configured is left out."""
+class CommandTelegrams:
+    """Makes the command telegrams of all axes from their rows; one that says the same is the one made before."""
 
-    __slots__ = ("_by_cob_id",)
+    __slots__ = ("_frames", "_makers")
 
     def __init__(self, nodes: Sequence[NodeId], axis: Rows) -> None:
-        self._by_cob_id = {
-            telegram.base + node: (axis[index], telegram, telegram.layout)
-            for index, node in enumerate(nodes)
+        """`nodes` in the order of the rows."""
+        makers = {
+            telegram.base + node: (telegram.layout.pack, _cells(row, telegram))
+            for node, row in zip(nodes, axis, strict=True)
+            for telegram in RPDOS
+        }
+        self._frames = [CanFrame(cob_id) for cob_id in sorted(makers)]
+        self._makers = [makers[frame.cob_id] for frame in self._frames]
+
+    def frames(self) -> list[CanFrame]:
+        """Return the telegrams with the present numbers, in identifier order."""
+        frames = self._frames
+        for place, (pack, cells) in enumerate(self._makers):
+            data = pack(*[number[0] for number in cells])
+            if data != frames[place].data:
+                frames[place] = CanFrame(frames[place].cob_id, data)
+        return frames.copy()
+
+
+class ActualTelegrams:
+    """Takes TPDOs into the axis rows; a frame of another length than configured is left out.
+
+    `cob_ids` are those of all actual value telegrams: what a cycle waits for.
+    """
+
+    __slots__ = ("_takers", "cob_ids")
+
+    def __init__(self, nodes: Sequence[NodeId], axis: Rows) -> None:
+        """`nodes` in the order of the rows."""
+        self._takers = {
+            telegram.base + node: (telegram.layout.size, telegram.layout.unpack, _cells(row, telegram))
+            for node, row in zip(nodes, axis, strict=True)
             for telegram in TPDOS
         }
+        self.cob_ids = frozenset(self._takers)
 
-    @property
-    def cob_ids(self) -> frozenset[int]:
-        """COB-IDs of all actual value telegrams: what a cycle waits for."""
-        return frozenset(self._by_cob_id)
+    def take(self, frames: Iterable[CanFrame]) -> list[CanFrame]:
+        """Take the actual value telegrams among the frames; return the others."""
+        others = []
+        for frame in frames:
+            taker = self._takers.get(frame.cob_id)
+            if taker is None:
+                others.append(frame)
+                continue
+            size, unpack, cells = taker
+            if len(frame.data) == size:
+                for number, value in zip(cells, unpack(frame.data)):  # noqa: B905 (one each)
+                    number[0] = value
+        return others
 
-    def take(self, frame: CanFrame) -> bool:
-        """Take a frame; tell whether it is an actual value telegram."""
-        found = self._by_cob_id.get(frame.cob_id)
-        if found is None:
-            return False
-        row, telegram, layout = found
-        if len(frame.data) == layout.size:
-            _store(row, telegram, layout.unpack(frame.data))
-        return True
 
-
-def _store(row: Rows, telegram: Telegram, values: Sequence[int]) -> None:
-    for number, value in zip(telegram.numbers, values, strict=True):
-        if number.element is None:
-            row[_HERE.get(number.name, number.name)] = value
-        else:
-            row[number.name][number.element] = value
+def _cells(row: Rows, telegram: Telegram) -> list[memoryview]:
+    return [
+        cell(row, _HERE.get(number.name, number.name), number.element or 0) for number in telegram.numbers
+    ]

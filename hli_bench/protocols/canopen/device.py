@@ -136,9 +136,10 @@ class Device:
             return self._lss.on_frame(frame, self.node_id)
         if cob_id == REQUEST_COB_ID + self.node_id:
             return self._sdo.on_frame(frame, now) if self.nmt.state in _TALKING else []
-        self._consumer.on_frame(frame, now)
-        guarded = self._error_control.on_frame(frame, now)
-        return guarded or self._on_pdo(frame, now)
+        if cob_id > ERROR_CONTROL_COB_ID:
+            self._consumer.on_frame(frame, now)
+            return self._error_control.on_frame(frame, now)
+        return self._on_pdo(frame, now)
 
     def on_sync(self, now: Ns) -> list[CanFrame]:
         """Let received RPDO data take effect, then sample and return the synchronous TPDOs."""
@@ -146,10 +147,7 @@ class Device:
             self._application.on_sync(now)
         if self.nmt.state is not NmtState.OPERATIONAL:
             return []
-        for rpdo in self._pdos.rpdos:
-            rpdo.on_sync()
-        sampled = [tpdo.on_sync(now) for tpdo in self._pdos.tpdos]
-        return [frame for frame in sampled if frame is not None]
+        return self._pdos.on_sync(now)
 
     def tick(self, now: Ns) -> list[CanFrame]:
         """Return what is due by time or event: EMCY, event-driven TPDOs, heartbeat, SDO time-out."""
@@ -237,7 +235,9 @@ class Device:
             return [answer for answer in asked if answer is not None]
         for rpdo in self._pdos.receivers(frame.cob_id):
             accepted = rpdo.receive(frame.data)
-            self._check_length(accepted=accepted, exact=len(frame.data) == rpdo.plan.codec.size)
+            exact = len(frame.data) == rpdo.plan.codec.size
+            if not exact or self.emcy.active:
+                self._check_length(accepted=accepted, exact=exact)
         return []
 
     def _check_length(self, *, accepted: bool, exact: bool) -> None:

@@ -48,6 +48,7 @@ class ObjectValues:
         "_write_hooks",
         "description",
         "getters",
+        "hooked",
         "node_id",
     )
 
@@ -61,21 +62,26 @@ class ObjectValues:
         """How each object is read; a dictionary of its own so that a PDO packs without detours."""
         self._write_hooks: dict[tuple[int, int], WriteHook] = {}
         self._record_hooks: dict[int, RecordHook] = {}
+        self.hooked: Callable[[], None] = _nothing
+        """Is told of every new hook: for who keeps getters or receivers."""
 
     def on_read(self, index: int, subindex: int, hook: ReadHook) -> None:
         """Let `hook` answer reads of an object from now on."""
         self._entry(index, subindex)
         self.getters[index, subindex] = hook
+        self.hooked()
 
     def on_write(self, index: int, subindex: int, hook: WriteHook) -> None:
         """Let `hook` check and follow writes from the bus (SDO and RPDO) to an object."""
         self._entry(index, subindex)
         self._write_hooks[index, subindex] = hook
+        self.hooked()
 
     def on_write_record(self, index: int, hook: RecordHook) -> None:
         """Let `hook` check and follow writes from the bus to any sub-index of an object."""
         self._entry(index, 0)
         self._record_hooks[index] = hook
+        self.hooked()
 
     def get(self, index: int, subindex: int = 0) -> Value:
         """Return the present value. Raises SdoAbort when there is no such object."""
@@ -134,15 +140,25 @@ class ObjectValues:
 
     def receive(self, entry: Entry, value: Value) -> None:
         """Store a value from the bus (SDO or RPDO) after limits and hook agreed. Raises SdoAbort."""
-        if isinstance(value, int):
-            _check_limits(entry, value)
+        self.receiver(entry)(value)
+
+    def receiver(self, entry: Entry) -> WriteHook:
+        """Return what `receive` does with values of one object until a hook is set."""
         address = entry.index, entry.subindex
         hook = self._write_hooks.get(address)
-        if hook is not None:
-            hook(value)
-        elif entry.index in self._record_hooks:
-            self._record_hooks[entry.index](entry.subindex, value)
-        self._values[address] = value
+        if hook is None and entry.index in self._record_hooks:
+            hook = partial(self._record_hooks[entry.index], entry.subindex)
+        limited = entry.low is not None or entry.high is not None or entry.data_type is DataType.BOOLEAN
+        stored = self._values
+
+        def receive(value: Value) -> None:
+            if limited and isinstance(value, int):
+                _check_limits(entry, value)
+            if hook is not None:
+                hook(value)
+            stored[address] = value
+
+        return receive
 
     def entry(self, index: int, subindex: int) -> Entry:
         """Return the description of an object. Raises SdoAbort when there is none."""
@@ -189,6 +205,9 @@ class ObjectValues:
 def _factory(description: ObjectDictionary, node_id: int) -> Mapping[tuple[int, int], Value]:
     """Return the values of a node as its EDS gives them."""
     return {address: entry.default_for(node_id) for address, entry in description.entries.items()}
+
+
+def _nothing() -> None: ...
 
 
 def _check_length(size: int, expected: int) -> None:

@@ -37,13 +37,14 @@ class ErrorRegister(IntFlag):
 class EmergencyProducer:
     """Keeps 0x1001 and 0x1003 and gives the frames, not denser than the inhibit time (0x1015, 100 us)."""
 
-    __slots__ = ("_active", "_allowed_at", "_history_depth", "_queue", "_values")
+    __slots__ = ("_allowed_at", "_history_depth", "_queue", "_values", "active")
 
     def __init__(self, values: ObjectValues) -> None:
         self._values = values
         self._queue: list[bytes] = []
         self._allowed_at = Ns(0)
-        self._active: dict[int, ErrorRegister] = {}
+        self.active: dict[int, ErrorRegister] = {}
+        """Errors that have occurred and not recovered, with their bits of the register."""
         self._history_depth = len(values.description.subindices(_HISTORY))
         if self._history_depth:
             values.on_write(_HISTORY, 0, self._clear_history)
@@ -52,24 +53,24 @@ class EmergencyProducer:
 
     def occur(self, code: int, register: ErrorRegister, detail: bytes = b"") -> bool:
         """Report an error in register, history and message. False: it is active already."""
-        if code in self._active:
+        if code in self.active:
             return False
-        self._active[code] = register | ErrorRegister.GENERIC
+        self.active[code] = register | ErrorRegister.GENERIC
         self._remember(code)
         self._update(code, detail)
         return True
 
     def recover(self, code: int) -> None:
         """Report that an error is gone; the message carries code 0 when it was the last one."""
-        if self._active.pop(code, None) is not None:
-            self._update(next(reversed(self._active), NO_ERROR), b"")
+        if self.active.pop(code, None) is not None:
+            self._update(next(reversed(self.active), NO_ERROR), b"")
 
     def reset(self, *, keep_errors: bool) -> None:
         """Forget waiting messages and, unless they are kept over a reset communication, active errors."""
         self._queue.clear()
         self._allowed_at = Ns(0)
         if not keep_errors:
-            self._active.clear()
+            self.active.clear()
         self._set_register()
 
     def tick(self, now: Ns) -> list[CanFrame]:
@@ -96,7 +97,7 @@ class EmergencyProducer:
     def _set_register(self) -> int:
         """Show the bits of all active errors in 0x1001 and return them."""
         register = 0
-        for bits in self._active.values():
+        for bits in self.active.values():
             register |= bits
         self._values.put(_REGISTER, 0, register)
         return register

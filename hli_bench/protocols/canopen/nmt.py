@@ -190,6 +190,8 @@ class HeartbeatConsumer:
     @property
     def lost(self) -> tuple[int, ...]:
         """Node ids whose heartbeat is overdue."""
+        if not self._watched:
+            return ()
         return tuple(node for node, watched in self._watched.items() if watched.lost)
 
     @property

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import lru_cache
+from operator import call
 from typing import Final
 
 from hli_bench.base.errors import InputError
@@ -61,17 +62,7 @@ class PdoPlan:
 
     mapping: tuple[int, ...]
     entries: tuple[Entry, ...]
-    addresses: tuple[tuple[int, int], ...]
     codec: struct.Struct
-
-    def pack(self, values: ObjectValues) -> bytes:
-        """Return the present values of all mapped objects as PDO data."""
-        getters = values.getters
-        return self.codec.pack(*[getters[address]() for address in self.addresses])
-
-    def unpack(self, data: bytes) -> tuple[Value, ...]:
-        """Return the values of the mapped objects; `data` has at least the plan's length."""
-        return self.codec.unpack_from(data)
 
 
 @lru_cache(maxsize=1024)
@@ -92,8 +83,7 @@ def make_plan(description: ObjectDictionary, mapping: tuple[int, ...], *, sendin
     codec = struct.Struct("".join(codes))
     if codec.size > MAX_BYTES:
         raise SdoAbort(AbortCode.PDO_LENGTH)
-    addresses = tuple((entry.index, entry.subindex) for entry in entries)
-    return PdoPlan(mapping, tuple(entries), addresses, codec)
+    return PdoPlan(mapping, tuple(entries), codec)
 
 
 def mapped_entry(description: ObjectDictionary, word: int, *, sending: bool) -> Entry | None:
@@ -122,17 +112,22 @@ def _check_dummy(index: int, subindex: int, bits: int) -> None:
 
 
 class _Pdo:
-    """Parameters of one PDO and the rules by which they may change."""
+    """Parameters of one PDO and the rules by which they may change.
+
+    `cob_word` is its COB-ID with all bits, `cob_id` the 11-bit identifier, `valid` whether the PDO exists.
+    """
 
     __slots__ = (
         "_changed",
         "_communication",
         "_mapping",
         "_values",
+        "cob_id",
         "cob_word",
         "plan",
         "sending",
         "transmission",
+        "valid",
     )
 
     def __init__(
@@ -150,15 +145,18 @@ class _Pdo:
             message = f"0x{communication:04X} and 0x{self._mapping:04X} lack an object that a PDO needs"
             raise InputError(message) from abort
 
-    @property
-    def cob_id(self) -> int:
-        """The 11-bit identifier."""
-        return self.cob_word & _COB_ID_MASK
+    def start(self) -> None:
+        """Begin anew, on entering OPERATIONAL."""
+        raise NotImplementedError
 
-    @property
-    def valid(self) -> bool:
-        """Whether the PDO exists."""
-        return not self.cob_word & INVALID
+    def bind(self) -> None:
+        """Find out by which hooks the values of the mapping pass."""
+        raise NotImplementedError
+
+    def _identify(self, cob_word: int) -> None:
+        self.cob_word = cob_word
+        self.cob_id = cob_word & _COB_ID_MASK
+        self.valid = not cob_word & INVALID
 
     @property
     def signature(self) -> Signature:
@@ -167,13 +165,14 @@ class _Pdo:
 
     def reload(self) -> None:
         """Take over the values of the dictionary after power-on or reset. Raises InputError (broken EDS)."""
-        self.cob_word = self._values.number(self._communication, _Parameter.COB_ID)
+        self._identify(self._values.number(self._communication, _Parameter.COB_ID))
         self.transmission = self._values.number(self._communication, _Parameter.TYPE)
         count = self._values.number(self._mapping, 0)
         try:
             self.plan = make_plan(self._values.description, self._entries(count), sending=self.sending)
         except SdoAbort as abort:
             raise InputError(f"default mapping of 0x{self._mapping:04X}: {abort}") from abort
+        self.bind()
         self._changed()
 
     def _hook(self) -> None:
@@ -212,7 +211,7 @@ class _Pdo:
                 raise SdoAbort(AbortCode.RANGE)
             if self.valid and identifier != self.cob_id:
                 raise SdoAbort(AbortCode.RANGE)
-        self.cob_word = word
+        self._identify(word)
         self._changed()
 
     def _write_type(self, value: Value) -> None:
@@ -234,6 +233,7 @@ class _Pdo:
         if count > MAX_ENTRIES or (count and not self._values.has(self._mapping, count)):
             raise SdoAbort(AbortCode.PDO_LENGTH)
         self.plan = make_plan(self._values.description, self._entries(count), sending=self.sending)
+        self.bind()
         self._changed()
 
     def _write_entry(self, value: Value) -> None:
@@ -247,38 +247,43 @@ class _Pdo:
 class Rpdo(_Pdo):
     """A PDO that this node receives."""
 
-    __slots__ = ("_received",)
+    __slots__ = ("_receivers", "received")
 
     def __init__(self, values: ObjectValues, communication: int, changed: Callable[[], None]) -> None:
-        self._received: bytes | None = None
+        self.received: bytes | None = None
+        """Data that wait for a SYNC."""
         super().__init__(values, communication, changed, sending=False)
+
+    def bind(self) -> None:
+        """Find out where the values of the mapping go."""
+        self._receivers = [self._values.receiver(entry) for entry in self.plan.entries]
+
+    def start(self) -> None:
+        """Begin anew, on entering OPERATIONAL."""
+        self.received = None
+        self.bind()
 
     def receive(self, data: bytes) -> bool:
         """Take data, effective now or, for synchronous types, at the next SYNC. False: too short."""
         if len(data) < self.plan.codec.size:
             return False
         if self.transmission in SYNCHRONOUS:
-            self._received = data
+            self.received = data
         else:
             self._apply(data)
         return True
 
     def on_sync(self) -> None:
-        """Let data received since the last SYNC take effect, unless they are too short for a mapping made since."""
-        if self._received is not None:
-            data, self._received = self._received, None
-            if len(data) >= self.plan.codec.size:
-                self._apply(data)
-
-    def forget(self) -> None:
-        """Drop data that wait for a SYNC."""
-        self._received = None
+        """Let `received` take effect, unless it is too short for a mapping made since."""
+        data, self.received = self.received, None
+        if data is not None and len(data) >= self.plan.codec.size:
+            self._apply(data)
 
     def _apply(self, data: bytes) -> None:
         """Store all values; one that its object refuses is left out (decided here: a PDO has no abort)."""
-        for entry, value in zip(self.plan.entries, self.plan.unpack(data), strict=True):
+        for receive, value in zip(self._receivers, self.plan.codec.unpack_from(data), strict=True):
             try:
-                self._values.receive(entry, value)
+                receive(value)
             except SdoAbort:
                 continue
 
@@ -286,32 +291,45 @@ class Rpdo(_Pdo):
 class Tpdo(_Pdo):
     """A PDO that this node sends."""
 
-    __slots__ = ("_sent_at", "_sent_data", "_syncs")
+    __slots__ = ("_readers", "_sent", "_sent_at", "_syncs")
 
     def __init__(self, values: ObjectValues, communication: int, changed: Callable[[], None]) -> None:
         self._sent_at: Ns | None = None
-        self._sent_data: bytes | None = None
+        self._sent: CanFrame | None = None
         self._syncs = 0
         super().__init__(values, communication, changed, sending=True)
+
+    def bind(self) -> None:
+        """Find out where the values of the mapping come from."""
+        getters = self._values.getters
+        self._readers = [getters[entry.index, entry.subindex] for entry in self.plan.entries]
 
     def start(self) -> None:
         """Begin anew, on entering OPERATIONAL."""
         self._sent_at = None
-        self._sent_data = None
+        self._sent = None
         self._syncs = 0
+        self.bind()
+
+    def pack(self) -> bytes:
+        """Return the present values of all mapped objects as PDO data."""
+        return self.plan.codec.pack(*map(call, self._readers))
 
     def on_sync(self, now: Ns) -> CanFrame | None:
         """Return the frame due at this SYNC: every n-th for types 1..240, after a change for type 0."""
-        if not self.valid or self.transmission not in SYNCHRONOUS:
-            return None
         if self.transmission == 0:
-            data = self.plan.pack(self._values)
-            return None if data == self._sent_data else self._send(data, now)
+            data = self.pack()
+            return None if self._has_sent(data) else self._send(data, now)
         self._syncs += 1
         if self._syncs < self.transmission:
             return None
         self._syncs = 0
-        return self._send(self.plan.pack(self._values), now)
+        return self._send(self.pack(), now)
+
+    @property
+    def at_sync(self) -> bool:
+        """Whether a SYNC sends it."""
+        return self.valid and self.transmission in SYNCHRONOUS
 
     @property
     def on_event(self) -> bool:
@@ -322,9 +340,9 @@ class Tpdo(_Pdo):
         """Return the frame due by event (a mapped value changed) or timer, after the inhibit time."""
         if not self.on_event or not self.plan.entries:
             return None
-        data = self.plan.pack(self._values)
+        data = self.pack()
         timer = self._timer_due()
-        if data == self._sent_data and (timer is None or now < timer):
+        if self._has_sent(data) and (timer is None or now < timer):
             return None
         return None if now < self._inhibited_until() else self._send(data, now)
 
@@ -332,14 +350,14 @@ class Tpdo(_Pdo):
         """Return the answer to a remote frame, None where bit 30 of the COB-ID forbids it."""
         if not self.valid or self.cob_word & NO_RTR:
             return None
-        return self._send(self.plan.pack(self._values), now)
+        return self._send(self.pack(), now)
 
     def next_due(self) -> Ns | None:
         """Return when the event timer or the end of the inhibit time makes `tick` send at the latest."""
         if not self.on_event or self._sent_at is None:
             return None
         timer = self._timer_due()
-        if self.plan.pack(self._values) != self._sent_data:
+        if not self._has_sent(self.pack()):
             return self._inhibited_until()
         return None if timer is None else max(timer, self._inhibited_until())
 
@@ -358,21 +376,29 @@ class Tpdo(_Pdo):
         has = self._values.has(self._communication, subindex)
         return self._values.number(self._communication, subindex) if has else 0
 
+    def _has_sent(self, data: bytes) -> bool:
+        return self._sent is not None and self._sent.data == data
+
     def _send(self, data: bytes, now: Ns) -> CanFrame:
+        """Return the frame with these data; the one sent last while it says the same."""
         self._sent_at = now
-        self._sent_data = data
-        return CanFrame(self.cob_id, data)
+        sent = self._sent
+        if sent is None or sent.data != data or sent.cob_id != self.cob_id:
+            sent = self._sent = CanFrame(self.cob_id, data)
+        return sent
 
 
 class PdoSet:
     """All PDOs of a node, in the order of their numbers; `changes` grows with every change of a parameter."""
 
-    __slots__ = ("_by_cob_id", "_on_event", "changes", "rpdos", "tpdos")
+    __slots__ = ("_at_sync", "_by_cob_id", "_on_event", "_values", "changes", "rpdos", "tpdos")
 
     def __init__(self, values: ObjectValues) -> None:
         self.changes = 0
+        self._values = values
         self._by_cob_id: dict[int, list[Rpdo]] | None = None
         self._on_event: tuple[Tpdo, ...] | None = None
+        self._at_sync: tuple[Tpdo, ...] | None = None
         received, sent = _communication(values.description)
         self.rpdos = tuple(Rpdo(values, index, self._changed) for index in received)
         self.tpdos = tuple(Tpdo(values, index, self._changed) for index in sent)
@@ -391,6 +417,15 @@ class PdoSet:
                     self._by_cob_id.setdefault(rpdo.cob_id, []).append(rpdo)
         return self._by_cob_id.get(cob_id, [])
 
+    def on_sync(self, now: Ns) -> list[CanFrame]:
+        """Let received RPDO data take effect, then sample and return the TPDOs that are due at a SYNC."""
+        for rpdo in self.rpdos:
+            if rpdo.received is not None:
+                rpdo.on_sync()
+        if self._at_sync is None:
+            self._at_sync = tuple(tpdo for tpdo in self.tpdos if tpdo.at_sync)
+        return [frame for tpdo in self._at_sync if (frame := tpdo.on_sync(now)) is not None]
+
     @property
     def on_event(self) -> tuple[Tpdo, ...]:
         """The valid TPDOs that an event or a timer sends."""
@@ -406,15 +441,19 @@ class PdoSet:
 
     def start(self) -> None:
         """Begin anew, on entering OPERATIONAL."""
-        for rpdo in self.rpdos:
-            rpdo.forget()
-        for tpdo in self.tpdos:
-            tpdo.start()
+        for pdo in (*self.rpdos, *self.tpdos):
+            pdo.start()
+        self._values.hooked = self._bind
+
+    def _bind(self) -> None:
+        for pdo in (*self.rpdos, *self.tpdos):
+            pdo.bind()
 
     def _changed(self) -> None:
         self.changes += 1
         self._by_cob_id = None
         self._on_event = None
+        self._at_sync = None
 
 
 @lru_cache(maxsize=64)

@@ -5,12 +5,10 @@ status, latched position of the first edge; TPDO3 torque, following error; TPDO4
 the second edge. Source: measurement manual 6.4 for what measuring needs.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from struct import Struct
-from typing import Any, Final, NamedTuple
-
-from hli_bench.wire.can import CanFrame
+from typing import Final, NamedTuple
 
 BITS: Final = {"H": 16, "h": 16, "i": 32, "I": 32}
 _LATCHES: Final = (0x60BA, 0x60BB, 0x60BC, 0x60BD)
@@ -42,14 +40,6 @@ class Telegram:
         self.mapping = tuple(number.entry for number in numbers)
         self.layout = Struct("<" + "".join(number.code for number in numbers))
 
-    def frame(self, node: int, row: Any) -> CanFrame:
-        """Return the frame of a node with the numbers of a row."""
-        values = [
-            row[number.name] if number.element is None else row[number.name][number.element]
-            for number in self.numbers
-        ]
-        return CanFrame(self.base + node, self.layout.pack(*values))
-
 
 RPDOS: Final = (
     Telegram(0x200, (Number("controlword", "H", 0x6040), Number("target", "i", 0x607A))),
@@ -70,11 +60,6 @@ def tpdos(probing_input: int = 0) -> tuple[Telegram, ...]:
 
 
 TPDOS: Final = tpdos()
-
-
-def frames(telegrams: Iterable[Telegram], node: int, row: Any) -> list[CanFrame]:
-    """Return the frames of a node with the numbers of a row, in the order of the telegrams."""
-    return [telegram.frame(node, row) for telegram in telegrams]
 
 
 def changed(probing_input: int) -> Sequence[tuple[int, Telegram]]:

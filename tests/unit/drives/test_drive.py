@@ -16,6 +16,7 @@ from hli_bench.laws.rows import LOG, SERVO
 from hli_bench.laws.servo import supervise
 from hli_bench.protocols.canopen import telegram
 from hli_bench.protocols.canopen.aborts import AbortCode
+from hli_bench.runtime.frames import cycle_frames
 from hli_bench.wire.can import CanFrame
 
 NODE_ID = 3
@@ -412,9 +413,10 @@ class TestRowToRow:
             row["latch"][:2] = logged["latch"]
             row["following_error"] = logged["following_error"]
             logged["statusword"] = enabled.statusword
-            assert telegram.frames(telegram.TPDOS, NODE_ID, logged) == bus.cycle()
             logged["controlword"] = 0x0F
-            for frame in telegram.frames(telegram.RPDOS, NODE_ID, logged):
+            _, *made = cycle_frames([NODE_ID], logged.reshape(1))
+            assert made[: len(telegram.TPDOS)] == bus.cycle()
+            for frame in made[len(telegram.TPDOS) :]:
                 bus.send_message(frame.cob_id, frame.data)
             bus.cycle()
             assert row["target"] == logged["target"]

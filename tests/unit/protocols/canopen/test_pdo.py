@@ -65,9 +65,9 @@ def test_remap_by_python_canopens_master(master: Any, running: Any, bus: Any) ->
 @given(values=st.tuples(st.integers(-(1 << 15), (1 << 15) - 1), st.integers(0, 255), st.integers(0, 65535)))
 def test_pack_and_unpack_keep_every_value(description: Any, values: Any) -> None:
     device = Device(description, 5)
-    plan = device.pdos.tpdos[0].plan
+    sent = device.pdos.tpdos[0]
     device.values.put(0x2004, 0, values[0])
-    assert plan.unpack(plan.pack(device.values)) == (values[0],)
+    assert sent.plan.codec.unpack(sent.pack()) == (values[0],)
 
 
 def test_changes_are_refused_while_the_pdo_is_valid_or_counted(master: Any) -> None:
@@ -239,6 +239,14 @@ def test_value_that_its_object_refuses_is_left_out(running: Any) -> None:
     running.on_frame(CanFrame(0x205, b"\x05\0"), Ns(0))
     sync(running)
     assert running.values.get(WORD) == 0
+
+
+def test_object_that_is_hooked_while_its_pdo_runs_is_read_from_the_hook(running: Any) -> None:
+    before = sync(running)
+    running.values.on_read(0x2004, 0, lambda: 0x1234)
+    (frame,) = sync(running)
+    assert [frame] != before
+    assert b"\x34\x12" in frame.data
 
 
 def test_pdos_are_silent_outside_operational(device: Any) -> None:

@@ -29,7 +29,7 @@ from drives.cia402.states import (
 from drives.cia402.touch_probe import ProbeSource, resolve_source
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import NS_PER_S, Ns
-from hli_bench.laws.rows import cell
+from hli_bench.laws.rows import Cells
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.datatypes import Value
 from hli_bench.protocols.canopen.device import Device
@@ -119,15 +119,16 @@ class Drive:
         self.device = device
         self.state = State.SWITCH_ON_DISABLED
         self._row = row
-        self._target = cell(row, "target")
-        self._probe_function = cell(row, "probe_function")
-        self._flags = cell(row, "status_flags")
-        self._law_fault = cell(row, "fault")
+        cells = Cells(row)
+        self._target = cells("target")
+        self._probe_function = cells("probe_function")
+        self._flags = cells("status_flags")
+        self._law_fault = cells("fault")
         self._options = options
         self._now = Ns(0)
         self._signature_changes = -1
         self._signature_default = False
-        self._hook_reads()
+        self._hook_reads(cells)
         self._hook_writes()
         self._start()
         device.attach(self)
@@ -271,15 +272,14 @@ class Drive:
         self._write_probe_function(values.stored(*objects.PROBE_FUNCTION))
         self._enter(State.SWITCH_ON_DISABLED)
 
-    def _hook_reads(self) -> None:
+    def _hook_reads(self, cells: Cells) -> None:
         """Let the objects of the machine's numbers answer from the row."""
-        row = self._row
         sources: dict[ObjectAddress, Callable[[], Value]] = {
             objects.STATUSWORD: lambda: self.statusword,
             objects.CONTROLWORD: lambda: self._word,
             objects.PROBE_FUNCTION: self._read_probe_function,
             objects.MODE_DISPLAY: lambda: self._option(objects.MODE),
-            objects.RATED_TORQUE: lambda: round(float(row["rated_torque"]) * 1000.0),
+            objects.RATED_TORQUE: lambda: round(float(self._row["rated_torque"]) * 1000.0),
         }
         names = {
             objects.TARGET_POSITION: "target",
@@ -294,10 +294,10 @@ class Drive:
             objects.DIGITAL_INPUTS: "digital_inputs",
             objects.ENCODER_INCREMENTS: "increments_per_turn",
         }
-        sources |= {address: _reader(row, name) for address, name in names.items()}
+        sources |= {address: _reader(cells, name) for address, name in names.items()}
         for slot, (position, time) in enumerate(zip(objects.LATCHES, objects.LATCH_TIMES, strict=True)):
-            sources[position] = _reader(row, "latch", slot)
-            sources[time] = _reader(row, "latch_time", slot)
+            sources[position] = _reader(cells, "latch", slot)
+            sources[time] = _reader(cells, "latch_time", slot)
         for address, source in sources.items():
             self.device.values.on_read(*address, source)
 
@@ -435,8 +435,8 @@ def _check(description: ObjectDictionary, eds_path: Path) -> None:
             raise InputError(message, file=str(eds_path))
 
 
-def _reader(row: Any, name: str, element: int = 0) -> Callable[[], int]:
-    return partial(cell(row, name, element).__getitem__, 0)
+def _reader(cells: Cells, name: str, element: int = 0) -> Callable[[], int]:
+    return partial(cells(name, element).__getitem__, 0)
 
 
 def _store(row: Any, name: str, value: Value) -> None:

@@ -5,7 +5,7 @@ from struct import Struct
 from typing import Final
 
 from hli_bench.base.ids import NodeId
-from hli_bench.laws.rows import Rows, cell
+from hli_bench.laws.rows import Cells, Rows
 from hli_bench.protocols.canopen.pdo import INVALID, MAPPING_OFFSET, NO_RTR, TPDO_COMMUNICATION
 from hli_bench.protocols.canopen.telegram import RPDOS, TPDOS, Telegram, changed
 from hli_bench.wire.can import CanFrame
@@ -39,8 +39,8 @@ class CommandTelegrams:
     def __init__(self, nodes: Sequence[NodeId], axis: Rows) -> None:
         """`nodes` in the order of the rows."""
         makers = {
-            telegram.base + node: (telegram.layout.pack, _cells(row, telegram))
-            for node, row in zip(nodes, axis, strict=True)
+            telegram.base + node: (telegram.layout.pack, _numbers(cells, telegram))
+            for node, cells in zip(nodes, map(Cells, axis), strict=True)
             for telegram in RPDOS
         }
         self._frames = [CanFrame(cob_id) for cob_id in sorted(makers)]
@@ -49,8 +49,8 @@ class CommandTelegrams:
     def frames(self) -> list[CanFrame]:
         """Return the telegrams with the present numbers, in identifier order."""
         frames = self._frames
-        for place, (pack, cells) in enumerate(self._makers):
-            data = pack(*[number[0] for number in cells])
+        for place, (pack, numbers) in enumerate(self._makers):
+            data = pack(*[number[0] for number in numbers])
             if data != frames[place].data:
                 frames[place] = CanFrame(frames[place].cob_id, data)
         return frames.copy()
@@ -67,8 +67,8 @@ class ActualTelegrams:
     def __init__(self, nodes: Sequence[NodeId], axis: Rows) -> None:
         """`nodes` in the order of the rows."""
         self._takers = {
-            telegram.base + node: (telegram.layout.size, telegram.layout.unpack, _cells(row, telegram))
-            for node, row in zip(nodes, axis, strict=True)
+            telegram.base + node: (telegram.layout.size, telegram.layout.unpack, _numbers(cells, telegram))
+            for node, cells in zip(nodes, map(Cells, axis), strict=True)
             for telegram in TPDOS
         }
         self.cob_ids = frozenset(self._takers)
@@ -81,14 +81,12 @@ class ActualTelegrams:
             if taker is None:
                 others.append(frame)
                 continue
-            size, unpack, cells = taker
+            size, unpack, numbers = taker
             if len(frame.data) == size:
-                for number, value in zip(cells, unpack(frame.data)):  # noqa: B905 (one each)
+                for number, value in zip(numbers, unpack(frame.data)):  # noqa: B905 (one each)
                     number[0] = value
         return others
 
 
-def _cells(row: Rows, telegram: Telegram) -> list[memoryview]:
-    return [
-        cell(row, _HERE.get(number.name, number.name), number.element or 0) for number in telegram.numbers
-    ]
+def _numbers(cells: Cells, telegram: Telegram) -> list[memoryview]:
+    return [cells(_HERE.get(number.name, number.name), number.element or 0) for number in telegram.numbers]

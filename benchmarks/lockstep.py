@@ -2,7 +2,7 @@
 
 The bench: free pace, 3 axes, probing, a PLC task in every cycle of 1 ms in a process of its own. The reference passes
 messages of the same sizes, image there and eight bytes back, between the same kinds of sessions opened and received
-from in the same way, and does nothing with them. Ratio of round trips a second, in alternating turns of one run.
+from as the bench receives, and does nothing with them. Ratio of round trips a second, in alternating turns of one run.
 """
 
 import argparse

@@ -78,7 +78,8 @@ class HliServer:
         self._departed: list[str] = []
         self._requests: list[Request] = []
         self._answers: deque[tuple[Any, Answers]] = deque()
-        self._inbox: SimpleQueue[tuple[Callable[[Any], None], Any]] = SimpleQueue()
+        self._inbox: SimpleQueue[tuple[Callable[[Any], None], Any] | zenoh.Sample] = SimpleQueue()
+        """What came, with what handles it; commands come bare: no Python runs for them before the bench looks."""
         self._session = listen(endpoint, patience_us)
         try:
             self._declare()
@@ -242,7 +243,7 @@ class HliServer:
         self._alive = session.liveliness().declare_token(f"{machine}/bench/alive")
         put = self._inbox.put
         for key, on_sample in (
-            (f"plc/*{COMMANDS}", on_network_thread(self._commands_come)),
+            (f"plc/*{COMMANDS}", on_network_thread(put)),
             ("hli/unit/**", queued(put, self._on_member)),
             ("cnc/reset", queued(put, self._on_reset_put)),
         ):
@@ -279,26 +280,27 @@ class HliServer:
 
     def _drain(self) -> None:
         while not self._inbox.empty():
-            handle, message = self._inbox.get_nowait()
-            handle(message)
+            self._handle(self._inbox.get_nowait())
 
     def _wait(self, timeout_s: float) -> None:
         try:
-            handle, message = self._inbox.get(timeout=timeout_s)
+            message = self._inbox.get(timeout=timeout_s)
         except Empty:
             return
-        handle(message)
+        self._handle(message)
 
-    def _commands_come(self, sample: zenoh.Sample) -> None:
-        """Queue the bytes of a commands message: on the network thread, which has the sample at hand."""
+    def _handle(self, message: tuple[Callable[[Any], None], Any] | zenoh.Sample) -> None:
+        if isinstance(message, tuple):
+            handle, what = message
+            handle(what)
+        else:
+            self._on_commands(message)
+
+    def _on_commands(self, sample: zenoh.Sample) -> None:
         plc = str(sample.key_expr)[self._name_at : -len(COMMANDS)]
-        self._inbox.put((self._on_commands, (plc, payload(sample))))
-
-    def _on_commands(self, message: tuple[str, bytes]) -> None:
-        plc, commands = message
         mail = self._mail.get(plc)
         if mail is not None:
-            mail.append(commands)
+            mail.append(payload(sample))
         elif plc not in self._strangers:
             self._strangers.append(plc)
             self._refuse_commands(plc, "attach first")

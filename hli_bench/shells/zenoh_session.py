@@ -1,6 +1,7 @@
 """How a Zenoh session is opened: no scouting, no gossip, no shared memory, a lease of 500 ms."""
 
 import json
+import os
 import re
 from typing import Any, Final
 
@@ -21,6 +22,8 @@ TEXT: Final = zenoh.Encoding.TEXT_PLAIN
 JSON: Final = zenoh.Encoding.APPLICATION_JSON
 PACKED: Final = zenoh.Encoding.APPLICATION_OCTET_STREAM
 DROP_AFTER: Final = "transport/link/tx/queue/congestion_control/drop/wait_before_drop"
+_RUNTIME: Final = "(acc: (handover: rx), app: (handover: rx))"
+"""Zenoh's threads that read a socket also wait for it: else every message wakes one thread more on its way."""
 _TEXTS: Final = ("text/", "application/json", "zenoh/string")
 _SOURCE_PLACE: Final = re.compile(r"\s+at /.*", re.DOTALL)
 
@@ -67,6 +70,8 @@ def payload(message: zenoh.Sample | zenoh.Query | zenoh.ReplyError) -> bytes:
 
 
 def _config(mode: str, settings: dict[str, Any]) -> zenoh.Config:
+    # Zenoh looks at it once, when the first session of a process is opened.
+    os.environ.setdefault("ZENOH_RUNTIME", _RUNTIME)
     config = zenoh.Config()
     settings = {
         "mode": mode,

@@ -448,13 +448,19 @@ class _Loader:
         """Return the elements `plc[0]`, `plc[1]` ... in order; none may be missing."""
         found = {path.partition("]")[0] + "]" for path in self.values if path.startswith(f"{table}[")}
         names = list(takewhile(found.__contains__, (f"{table}[{number}]" for number in count())))
-        entries = f"1 {table} entry" if len(names) == 1 else f"{len(names)} {table} entries"
+        beyond = found.difference(names)
+        if beyond:
+            self._beyond(table, len(names), beyond)
+        return names
+
+    def _beyond(self, table: str, count: int, beyond: set[str]) -> None:
+        """Refuse entries whose number leaves a gap."""
+        entries = f"1 {table} entry" if count == 1 else f"{count} {table} entries"
+        there = f"the machine has {entries}, so {table}[{count}] is the highest, a new one"
         for path, given in self.given.items():
             name = path.partition("]")[0] + "]"
-            if name in found.difference(names):
-                there = f"the machine has {entries}, so {table}[{len(names)}] is the highest, a new one"
+            if name in beyond:
                 self._fail(given, f"{path} = {given.value!r}: there is no {name}; {there}")
-        return names
 
     def _entry(self, name: str) -> Given:
         """Return the first value that was given for an entry."""

@@ -100,7 +100,9 @@ def _place(entry: Entry, name: str, rows: Any) -> tuple[int, ...]:
             f"{entry.__name__}: {name} is {rows.dtype}, {rows.ndim} dimensions; expected {dtype}, "
             f"{dimensions}, contiguous and writeable"
         )
-    return rows.ctypes.data, *rows.shape
+    # a third of the time of rows.ctypes.data
+    address = ctypes.addressof(ctypes.c_char.from_buffer(rows)) if rows.size else 0
+    return address, *rows.shape
 
 
 def _made_by(llvm: Any) -> list[str]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -57,7 +58,7 @@ def build(settings: PlantSettings, channels: Sequence[Channel] = ()) -> Plant:
     switches = sum((axis.face is not None) + (axis.cam is not None) for axis in axes)
     rows = MachineRows.allocate(len(axes), switches, len(signals.names), len(channels))
     for number, axis in enumerate(axes):
-        _servo(rows.servo[number], axis, signals)
+        _servo(rows.servo, number, axis, signals)
     _switches(rows.switch, settings)
     for number, channel in enumerate(channels):
         row = rows.channel[number]
@@ -70,12 +71,15 @@ def build(settings: PlantSettings, channels: Sequence[Channel] = ()) -> Plant:
     return Plant(rows, signals, pending)
 
 
-def _servo(row: Rows, axis: PlantAxis, signals: SignalNames) -> None:
+def _servo(rows: Rows, number: int, axis: PlantAxis, signals: SignalNames) -> None:
     """Fill the row of one axis."""
-    plant = axis.plant
+    plant, row = axis.plant, rows[number]
     per_rad = plant.pitch_mm / math.tau
     inertia = plant.inertia_kg_m2 + (0.0 if axis.rotary else plant.mass_kg * (per_rad * 1e-3) ** 2)
     gain = inertia * plant.speed_bandwidth_per_s
+    shown = round(axis.start_mm / plant.pitch_mm * plant.increments_per_turn)
+    offset = 0 if axis.absolute else -shown
+    position = shown + offset
     values: Mapping[str, float] = {
         "kv": plant.kv_per_s,
         "speed_gain": gain,
@@ -92,14 +96,13 @@ def _servo(row: Rows, axis: PlantAxis, signals: SignalNames) -> None:
         "increments_per_rad": plant.increments_per_turn / math.tau,
         "increments_per_turn": plant.increments_per_turn,
         "zero_pulse": plant.zero_pulse_increments % plant.increments_per_turn,
+        "encoder_offset": offset,
+        "position": position,
+        "target": position,
+        "demand": position,
+        "demand_from": position,
     }
-    for field, value in values.items():
-        row[field] = value
-    shown = round(axis.start_mm / plant.pitch_mm * plant.increments_per_turn)
-    row["encoder_offset"] = 0 if axis.absolute else -shown
-    position = shown + int(row["encoder_offset"])
-    row["position"] = row["target"] = row["demand"] = position
-    row["demand_from"] = position
+    rows[[*values]][number] = tuple(values.values())
     if axis.stop is not None:
         stiffness = _motor_stiffness(axis, axis.stop.stiffness_n_per_um)
         row["stop_side"] = 1 if axis.stop.side == ABOVE else -1
@@ -128,7 +131,7 @@ def _switches(rows: Rows, settings: PlantSettings) -> None:
         if axis.face is not None:
             row = rows[used]
             used += 1
-            _face(row, axis, settings.probe, np.random.default_rng(_seed(settings.seed, axis.name)))
+            _face(row, axis, settings.probe, _spread(settings.seed, axis.name))
             row["signal"] = 0
             row["axis"] = number
         if axis.cam is not None:
@@ -141,7 +144,7 @@ def _switches(rows: Rows, settings: PlantSettings) -> None:
             row["hysteresis"] = axis.cam.hysteresis_um * 1e-3 / per_rad
 
 
-def _face(row: Rows, axis: PlantAxis, probe: Probe, generator: np.random.Generator) -> None:
+def _face(row: Rows, axis: PlantAxis, probe: Probe, spread: NDArray[np.float64]) -> None:
     """Fill the switch of a face: on behind the pretravel, off when the tip is out again.
 
     With a spread the release keeps four sigma from every trigger point, so that leaving does not chatter.
@@ -151,7 +154,6 @@ def _face(row: Rows, axis: PlantAxis, probe: Probe, generator: np.random.Generat
     into = axis.face.mm * 1e3 * um
     row["hysteresis"] = max(probe.pretravel_um, NOISE_LIMIT * probe.sigma_um) * um
     row["bounce_ns"] = round(probe.bounce_us * 1e3)
-    spread = np.clip(generator.standard_normal(NOISE), -NOISE_LIMIT, NOISE_LIMIT)
     row["noise"] = spread * probe.sigma_um * um
     if axis.face.material == ABOVE:
         row["low"] = into + probe.pretravel_um * um
@@ -161,9 +163,13 @@ def _face(row: Rows, axis: PlantAxis, probe: Probe, generator: np.random.Generat
         row["high"] = into - probe.pretravel_um * um
 
 
-def _seed(seed: int, axis: str) -> list[int]:
-    """Return the seed of an axis' probe contact: the bench's seed and the node's name."""
-    return [seed, *f"probe.{axis}".encode()]
+@lru_cache(maxsize=64)
+def _spread(seed: int, axis: str) -> NDArray[np.float64]:
+    """Return the trigger offsets of an axis' probe contact in sigma, drawn by the bench's seed and the node's name."""
+    generator = np.random.default_rng([seed, *f"probe.{axis}".encode()])
+    spread = np.clip(generator.standard_normal(NOISE), -NOISE_LIMIT, NOISE_LIMIT)
+    spread.flags.writeable = False
+    return spread
 
 
 def _settle(rows: MachineRows) -> None:
@@ -178,7 +184,8 @@ def _settle(rows: MachineRows) -> None:
         if channel["signal"] >= 0:
             level = rows.signal[channel["signal"]]["level"]
             channel["level"] = channel["level_next"] = channel["input"] = level
-    for servo in rows.servo:
-        for bit, signal in enumerate(servo["input_signal"]):
-            if signal >= 0 and rows.signal[signal]["level"]:
-                servo["digital_inputs"] |= np.uint32(1 << bit)
+    levels = rows.signal["level"].tolist()
+    for servo, inputs in zip(rows.servo, rows.servo["input_signal"].tolist(), strict=True):
+        servo["digital_inputs"] = sum(
+            1 << bit for bit, signal in enumerate(inputs) if signal >= 0 and levels[signal]
+        )

@@ -5,7 +5,7 @@ from struct import Struct
 from typing import Final
 
 from hli_bench.base.ids import NodeId
-from hli_bench.laws.rows import Cells, Rows
+from hli_bench.laws.rows import Rows
 from hli_bench.protocols.canopen.pdo import INVALID, MAPPING_OFFSET, NO_RTR, TPDO_COMMUNICATION
 from hli_bench.protocols.canopen.telegram import RPDOS, TPDOS, Telegram, changed
 from hli_bench.wire.can import CanFrame
@@ -39,9 +39,10 @@ class CommandTelegrams:
     def __init__(self, nodes: Sequence[NodeId], axis: Rows) -> None:
         """`nodes` in the order of the rows."""
         makers = {
-            telegram.base + node: (telegram.layout.pack, _numbers(cells, telegram))
-            for node, cells in zip(nodes, map(Cells, axis), strict=True)
+            telegram.base + node: (telegram.layout.pack, columns, index)
             for telegram in RPDOS
+            for columns in [_columns(axis, telegram)]
+            for index, node in enumerate(nodes)
         }
         self._frames = [CanFrame(cob_id) for cob_id in sorted(makers)]
         self._makers = [makers[frame.cob_id] for frame in self._frames]
@@ -49,8 +50,8 @@ class CommandTelegrams:
     def frames(self) -> list[CanFrame]:
         """Return the telegrams with the present numbers, in identifier order."""
         frames = self._frames
-        for place, (pack, numbers) in enumerate(self._makers):
-            data = pack(*[number[0] for number in numbers])
+        for place, (pack, columns, index) in enumerate(self._makers):
+            data = pack(*[column[index] for column in columns])
             if data != frames[place].data:
                 frames[place] = CanFrame(frames[place].cob_id, data)
         return frames.copy()
@@ -67,9 +68,10 @@ class ActualTelegrams:
     def __init__(self, nodes: Sequence[NodeId], axis: Rows) -> None:
         """`nodes` in the order of the rows."""
         self._takers = {
-            telegram.base + node: (telegram.layout.size, telegram.layout.unpack, _numbers(cells, telegram))
-            for node, cells in zip(nodes, map(Cells, axis), strict=True)
+            telegram.base + node: (telegram.layout.size, telegram.layout.unpack, columns, index)
             for telegram in TPDOS
+            for columns in [_columns(axis, telegram)]
+            for index, node in enumerate(nodes)
         }
         self.cob_ids = frozenset(self._takers)
 
@@ -81,12 +83,14 @@ class ActualTelegrams:
             if taker is None:
                 others.append(frame)
                 continue
-            size, unpack, numbers = taker
+            size, unpack, columns, index = taker
             if len(frame.data) == size:
-                for number, value in zip(numbers, unpack(frame.data)):  # noqa: B905 (one each)
-                    number[0] = value
+                for column, value in zip(columns, unpack(frame.data)):  # noqa: B905 (one each)
+                    column[index] = value
         return others
 
 
-def _numbers(cells: Cells, telegram: Telegram) -> list[memoryview]:
-    return [cells(_HERE.get(number.name, number.name), number.element or 0) for number in telegram.numbers]
+def _columns(axis: Rows, telegram: Telegram) -> list[memoryview]:
+    """Return the numbers of a telegram for all axes, as memory views: they read and store without numpy's detours."""
+    fields = [(axis[_HERE.get(number.name, number.name)], number.element) for number in telegram.numbers]
+    return [(field if element is None else field[:, element]).data for field, element in fields]

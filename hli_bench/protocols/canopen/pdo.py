@@ -12,7 +12,7 @@ from hli_bench.base.errors import InputError
 from hli_bench.base.time import NS_PER_MS, NS_PER_US, Ns
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.datatypes import STRUCT_CODES, DataType, Value, integer_range, size_of
-from hli_bench.protocols.canopen.dictionary import ObjectValues
+from hli_bench.protocols.canopen.dictionary import ObjectValues, ReadHook, WriteHook
 from hli_bench.protocols.canopen.eds import Entry, ObjectDictionary
 from hli_bench.wire.can import CanFrame
 
@@ -172,7 +172,6 @@ class _Pdo:
             self.plan = make_plan(self._values.description, self._entries(count), sending=self.sending)
         except SdoAbort as abort:
             raise InputError(f"default mapping of 0x{self._mapping:04X}: {abort}") from abort
-        self.bind()
         self._changed()
 
     def _hook(self) -> None:
@@ -250,6 +249,7 @@ class Rpdo(_Pdo):
     __slots__ = ("_receivers", "received")
 
     def __init__(self, values: ObjectValues, communication: int, changed: Callable[[], None]) -> None:
+        self._receivers: list[WriteHook] = []
         self.received: bytes | None = None
         """Data that wait for a SYNC."""
         super().__init__(values, communication, changed, sending=False)
@@ -294,6 +294,7 @@ class Tpdo(_Pdo):
     __slots__ = ("_readers", "_sent", "_sent_at", "_syncs")
 
     def __init__(self, values: ObjectValues, communication: int, changed: Callable[[], None]) -> None:
+        self._readers: list[ReadHook] = []
         self._sent_at: Ns | None = None
         self._sent: CanFrame | None = None
         self._syncs = 0

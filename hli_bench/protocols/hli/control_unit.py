@@ -87,7 +87,7 @@ class ControlUnit:
 
 
 class ControlUnits:
-    """All control units of an image; only those a PLC wrote to are looked at again."""
+    """All control units of an image in which no PLC has written yet; only those it writes to are looked at."""
 
     __slots__ = ("_by_element", "_image", "_units")
 
@@ -102,7 +102,6 @@ class ControlUnits:
                 continue
             zero = False if image.layout.elements[ids["command_w"]].type == "BOOL" else 0
             unit = ControlUnit(image, path, defaults.get(path.rpartition("/")[2], zero))
-            unit.sample()
             self._units[path] = unit
             self._by_element |= dict.fromkeys(ids.values(), (unit,))
         self._add_presence()

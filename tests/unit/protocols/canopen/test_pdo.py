@@ -65,6 +65,7 @@ def test_remap_by_python_canopens_master(master: Any, running: Any, bus: Any) ->
 @given(values=st.tuples(st.integers(-(1 << 15), (1 << 15) - 1), st.integers(0, 255), st.integers(0, 65535)))
 def test_pack_and_unpack_keep_every_value(description: Any, values: Any) -> None:
     device = Device(description, 5)
+    device.pdos.start()
     sent = device.pdos.tpdos[0]
     device.values.put(0x2004, 0, values[0])
     assert sent.plan.codec.unpack(sent.pack()) == (values[0],)

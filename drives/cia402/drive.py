@@ -320,7 +320,7 @@ class Drive:
     def _write_controlword(self, value: Value) -> None:
         """Run the state machine; the same word again changes nothing."""
         word, before = int(value), self._word
-        if word == before and self._destination is None and next_transition(self.state, word, word) is None:
+        if word == before and next_transition(self.state, word, word) is None:
             return
         was_holding = self.holding
         self._word = word

@@ -66,9 +66,9 @@ def how_to_install(package: str) -> str:
 def script(path: Path) -> ModuleType:
     """Load a user's Python file as a module of its own. Raises InputError when it cannot be read.
 
-    It may import what lies beside it; behind all other places, so that no name there hides a module of ours.
-    Always from its text: byte code that Python keeps beside it counts as fresh when the file is changed to one of the
-    same size within a second, as scripts made by tests are.
+    It may import what lies beside it; behind all other places, so that no name there hides a module of ours. The file
+    itself is always read from its text: byte code that Python keeps beside it counts as fresh when the file is changed
+    to one of the same size within a second, as scripts made by tests are.
     """
     if not path.is_file():
         raise InputError("no such file", file=str(path))

@@ -295,11 +295,9 @@ class Bench:
     def _open_door(self, endpoint: str, *, lockstep: bool) -> "HliDoor":
         from hli_bench.bench.door import HliDoor
         from hli_bench.shells.zenoh_server import HliServer
-        from hli_bench.shells.zenoh_session import PACED_PATIENCE_US, PATIENCE_US
 
-        patience_us = PATIENCE_US if lockstep else PACED_PATIENCE_US
         layout = self.kernel.image.layout
-        server = HliServer(endpoint, self.config.name, layout, self.terminal_layouts, patience_us)
+        server = HliServer(endpoint, self.config.name, layout, self.terminal_layouts, lockstep=lockstep)
         self._closing.enter_context(server)
         self._tap.door = HliDoor(
             server, self.engine, lockstep=lockstep, state=self.state, on_note=self._on_note

@@ -28,7 +28,6 @@ from hli_bench.shells.zenoh_requests import (
 from hli_bench.shells.zenoh_session import (
     JSON,
     PACKED,
-    PATIENCE_US,
     is_text,
     listen,
     on_network_thread,
@@ -59,9 +58,10 @@ class HliServer:
         machine: str,
         layout: Layout,
         terminals: Sequence[TerminalLayout],
-        patience_us: int = PATIENCE_US,
+        *,
+        lockstep: bool = True,
     ) -> None:
-        """Listen on `endpoint`; a link that is full for longer than `patience_us` loses messages.
+        """Listen on `endpoint`, for a bench that waits for its PLCs or for one that keeps its cycle.
 
         Raises EnvironmentLacks when it cannot listen.
         """
@@ -80,7 +80,7 @@ class HliServer:
         self._answers: deque[tuple[Any, Answers]] = deque()
         self._inbox: SimpleQueue[tuple[Callable[[Any], None], Any] | zenoh.Sample] = SimpleQueue()
         """What came, with what handles it; commands come bare: no Python runs for them before the bench looks."""
-        self._session = listen(endpoint, patience_us)
+        self._session = listen(endpoint, lockstep=lockstep)
         try:
             self._declare()
         except BaseException:

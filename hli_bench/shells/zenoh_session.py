@@ -22,16 +22,22 @@ TEXT: Final = zenoh.Encoding.TEXT_PLAIN
 JSON: Final = zenoh.Encoding.APPLICATION_JSON
 PACKED: Final = zenoh.Encoding.APPLICATION_OCTET_STREAM
 DROP_AFTER: Final = "transport/link/tx/queue/congestion_control/drop/wait_before_drop"
-_RUNTIME: Final = "(acc: (handover: rx), app: (handover: rx))"
-"""Zenoh's threads that read a socket also wait for it: else every message wakes one thread more on its way."""
+_RUNTIME: Final = "ZENOH_RUNTIME"
+_FEWER_THREADS: Final = "(acc: (handover: rx), app: (handover: rx))"
+"""Zenoh's threads that read a socket also wait for it: else every message wakes one thread more on its way.
+
+Not in a paced bench, where the threads that then take turns are louder than the one that wakes.
+"""
 _TEXTS: Final = ("text/", "application/json", "zenoh/string")
 _SOURCE_PLACE: Final = re.compile(r"\s+at /.*", re.DOTALL)
 
 
-def listen(endpoint: str, patience_us: int = PATIENCE_US) -> Any:
+def listen(endpoint: str, *, lockstep: bool = True) -> Any:
     """Open the bench's session: a router at `endpoint`. Raises EnvironmentLacks when it cannot listen."""
     try:
-        return zenoh.open(_config("router", {"listen/endpoints": [endpoint], DROP_AFTER: patience_us}))
+        patience_us = PATIENCE_US if lockstep else PACED_PATIENCE_US
+        settings = {"listen/endpoints": [endpoint], DROP_AFTER: patience_us}
+        return _open("router", settings, fewer_threads=lockstep)
     except zenoh.ZError as error:
         raise EnvironmentLacks(
             f"Zenoh cannot listen on {endpoint} ({_reason(error)}); is a bench up already? "
@@ -42,7 +48,7 @@ def listen(endpoint: str, patience_us: int = PATIENCE_US) -> Any:
 def connect(endpoint: str) -> Any:
     """Open a client's session to `endpoint`. Raises EnvironmentLacks when nobody listens there."""
     try:
-        return zenoh.open(_config("client", {"connect/endpoints": [endpoint], DROP_AFTER: PATIENCE_US}))
+        return _open("client", {"connect/endpoints": [endpoint], DROP_AFTER: PATIENCE_US}, fewer_threads=True)
     except zenoh.ZError as error:
         raise EnvironmentLacks(
             f"no bench listens on {endpoint} ({_reason(error)}); start one with `hli-bench serve`"
@@ -69,9 +75,18 @@ def payload(message: zenoh.Sample | zenoh.Query | zenoh.ReplyError) -> bytes:
     return message.payload.to_bytes() if message.payload is not None else b""
 
 
+def _open(mode: str, settings: dict[str, Any], *, fewer_threads: bool) -> Any:
+    """Open a session. The first one of a process decides on Zenoh's threads; a user's ZENOH_RUNTIME comes before."""
+    if _RUNTIME in os.environ or not fewer_threads:
+        return zenoh.open(_config(mode, settings))
+    os.environ[_RUNTIME] = _FEWER_THREADS
+    try:
+        return zenoh.open(_config(mode, settings))
+    finally:
+        del os.environ[_RUNTIME]
+
+
 def _config(mode: str, settings: dict[str, Any]) -> zenoh.Config:
-    # Zenoh looks at it once, when the first session of a process is opened.
-    os.environ.setdefault("ZENOH_RUNTIME", _RUNTIME)
     config = zenoh.Config()
     settings = {
         "mode": mode,

@@ -359,6 +359,11 @@ def _extremes(of: Distribution) -> tuple[Plain, ...]:
     return of.draw(2.0**-20), of.draw(1 - 2.0**-20)
 
 
+def _with_neighbours(scripts: Collection[Path]) -> set[Path]:
+    """Return the scripts and the Python files beside them, which they may import."""
+    return {*scripts, *(path for script in scripts for path in script.parent.glob("*.py") if path.is_file())}
+
+
 def _digests(campaign: Campaign, scripts: Collection[Path]) -> dict[str, str]:
     """Return a digest of each part of a campaign and of the files that it names; `scripts` of the machine."""
     job = campaign.job
@@ -367,7 +372,7 @@ def _digests(campaign: Campaign, scripts: Collection[Path]) -> dict[str, str]:
     parts: dict[str, Any] = {
         "program": job.text,
         "machine": machine,
-        "plc": sorted(path.read_bytes() for path in used),
+        "plc": sorted(path.read_bytes() for path in _with_neighbours(used)),
         "settings": sorted(campaign.fixed.items()),
         "grid": list(campaign.grid.items()),
         "random": [(key, repr(of)) for key, of in campaign.random.items()],

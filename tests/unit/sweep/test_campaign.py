@@ -3,6 +3,7 @@ from pathlib import Path
 import pytest
 
 from hli_bench.base.errors import InputError
+from hli_bench.base.loading import data_file
 from hli_bench.sweep.campaign import kind_of, read
 from hli_bench.sweep.work import nc_text
 
@@ -117,6 +118,16 @@ def test_plc_keys_beside_other_scripts_would_have_no_effect(write):
     )
     with pytest.raises(InputError, match="has no effect on scripts"):
         read(write(text))
+
+
+def test_a_file_beside_a_plc_script_counts_as_part_of_it(write, tmp_path):
+    (tmp_path / "mine.py").write_text((data_file("plc_scripts", "demo.py")).read_text())
+    (tmp_path / "gain.py").write_text("GAIN = 1\n")
+    text = GOOD.replace("seed = 4", 'plc = ["mine.py"]')
+    before = read(write(text)).digests
+    (tmp_path / "gain.py").write_text("GAIN = 2\n")
+    after = read(write(text)).digests
+    assert {name for name in before if before[name] != after[name]} == {"plc"}
 
 
 def test_too_many_runs_are_a_mistake(write):

@@ -135,6 +135,7 @@ def test_cob_ids_that_are_refused(master: Any, cob_id: int) -> None:
 
 
 def test_cob_id_moves_through_invalid(master: Any, running: Any) -> None:
+    assert [frame.cob_id for frame in sync(running)] == [0x185]
     write(master, 0x1800, 1, 0x185 | INVALID)
     assert sync(running) == []
     write(master, 0x1800, 1, 0x1A5)

@@ -22,6 +22,7 @@ from hli_bench.plc import Task
 from hli_bench.plc import load as load_script
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, Observer
+from hli_bench.shells.apart import apart
 from hli_bench.shells.pacing import RealPace, Stopwatch
 from hli_bench.shells.processes import Deadline, PlcProcess, free_endpoint
 from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
@@ -77,8 +78,13 @@ class Bench:
         for note in self.config.notes:
             if note.severity is Severity.WARNING:
                 on_note(f"warning: {note}")
+        for key in settings or {} if plc else ():
+            if key.startswith(("plc.", "plc[")):
+                on_note(
+                    f"warning: {key} has no effect: other scripts replace the machine's; set plc.0.script"
+                )
         self._on_note = on_note
-        native.prepare(lambda: on_note(native.COMPILING))
+        native.prepare(lambda: on_note(native.COMPILING), apart)
         with ExitStack() as stack:
             self._closing = stack
             self._realtime = realtime

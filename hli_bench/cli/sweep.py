@@ -42,9 +42,10 @@ def execute(arguments: argparse.Namespace) -> int:
         raise InputError(f"{workers} is not valid, expected 1 or more", file="--workers")
     file = supplied_file("campaigns", arguments.campaign)
     from hli_bench.laws import native
+    from hli_bench.shells.apart import apart
     from hli_bench.sweep import campaign, engines, sweep
 
-    native.prepare(lambda: print(native.COMPILING, file=sys.stderr, flush=True))
+    native.prepare(lambda: print(native.COMPILING, file=sys.stderr, flush=True), apart)
     engine = engines.engine(arguments.engine, workers)
     taken = campaign.read(file)
     folder = Path("out", file.stem) if arguments.out is None else Path(arguments.out)

@@ -50,8 +50,14 @@ def parameters(entry: Entry) -> Mapping[str, Any]:
     return {name: entry.__annotations__[name] for name in names}
 
 
-def prepare(on_compile: Callable[[], None] = lambda: None) -> None:
-    """Load the machine code; when none is kept compile the laws, and call `on_compile` before."""
+def prepare(
+    on_compile: Callable[[], None] = lambda: None,
+    apart: Callable[[Callable[[], cache.Code]], cache.Code] = lambda work: work(),
+) -> None:
+    """Load the machine code; when none is kept compile the laws, and call `on_compile` before.
+
+    `apart` does the compiling, in which numba and LLVM call Python back.
+    """
     if PLAIN or _FUNCTIONS:
         return
     from llvmlite import binding as llvm
@@ -59,12 +65,16 @@ def prepare(on_compile: Callable[[], None] = lambda: None) -> None:
     name = cache.file_name(*_made_by(llvm))
     code = cache.read(name)
     if code is None:
-        from hli_bench.laws.compiler import compile_laws
-
         on_compile()
-        code = compile_laws()
+        code = apart(_compile)
         cache.keep(name, code)
     _load(llvm, code)
+
+
+def _compile() -> cache.Code:
+    from hli_bench.laws.compiler import compile_laws
+
+    return compile_laws()
 
 
 def bind(entry: Entry, *leading: Rows | float) -> Entry:

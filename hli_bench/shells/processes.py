@@ -78,6 +78,13 @@ class PlcProcess:
             raise BenchError(f"the PLC process of {self._script} has ended with status {status}")
 
 
+class Gone(EnvironmentLacks):
+    """The process at the other end of a pipe has closed it."""
+
+    def __init__(self) -> None:
+        super().__init__("a process of the bench has gone")
+
+
 def framed(message: bytes) -> bytes:
     """Return a message as it passes a pipe."""
     return _LENGTH.pack(len(message)) + message
@@ -91,18 +98,18 @@ class Pipe:
         self._file = end.makefile("rb")
 
     def send(self, message: bytes) -> None:
-        """Send one message. Raises EnvironmentLacks when the other side has gone, TimeoutError when it is stuck."""
+        """Send one message. Raises Gone when the other side has, TimeoutError when it is stuck."""
         try:
             self._end.sendall(framed(message))
         except TimeoutError:
             raise
         except OSError as error:
-            raise EnvironmentLacks("a process of the bench has gone") from error
+            raise Gone from error
 
     def send_part(self, part: memoryview) -> int:
         """Send some of what `framed` gave, return how many bytes; 0 when the limit is 0 and nothing goes.
 
-        Raises EnvironmentLacks when the other side has gone, TimeoutError when it is stuck.
+        Raises Gone when the other side has, TimeoutError when it is stuck.
         """
         try:
             return self._end.send(part)
@@ -111,7 +118,7 @@ class Pipe:
         except TimeoutError:
             raise
         except OSError as error:
-            raise EnvironmentLacks("a process of the bench has gone") from error
+            raise Gone from error
 
     def limit(self, seconds: float) -> None:
         """Wait at most so long from now on, 0: not at all; after a TimeoutError the pipe is of no use any more."""
@@ -173,7 +180,7 @@ class Worker:
         """Send a message; `answer` takes the answer later. Raises as `ask` does."""
         try:
             self.pipe.send(message)
-        except (EnvironmentLacks, TimeoutError) as error:
+        except (Gone, TimeoutError) as error:
             raise self._failure(error) from error
 
     def answer(self) -> bytes:
@@ -207,11 +214,17 @@ class Worker:
 
 
 def work(main: Callable[[Pipe, Sequence[str]], None], arguments: Sequence[str]) -> int:
-    """Run the main function of a worker with its pipe and the rest of its arguments; return the exit status."""
+    """Run the main function of a worker with its pipe and the rest of its arguments; return the exit status.
+
+    When the bench closes the pipe while an answer is on its way, that is the regular end as well.
+    """
     descriptor = int(arguments[0])
     os.set_inheritable(descriptor, False)
     try:
-        main(Pipe(socket.socket(fileno=descriptor)), arguments[1:])
+        with contextlib.closing(Pipe(socket.socket(fileno=descriptor))) as pipe:
+            main(pipe, arguments[1:])
+    except Gone:
+        return 0
     except BenchError as error:
         sys.stderr.write(f"{error}\n")
         return error.exit_status

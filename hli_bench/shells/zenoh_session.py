@@ -26,7 +26,7 @@ _RUNTIME: Final = "ZENOH_RUNTIME"
 _FEWER_THREADS: Final = "(acc: (handover: rx), app: (handover: rx))"
 """Zenoh's threads that read a socket also wait for it: else every message wakes one thread more on its way.
 
-Not in a paced bench, where the threads that then take turns are louder than the one that wakes.
+Not in a paced bench, whose cycles were no less late with it.
 """
 _TEXTS: Final = ("text/", "application/json", "zenoh/string")
 _SOURCE_PLACE: Final = re.compile(r"\s+at /.*", re.DOTALL)

@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
@@ -17,7 +18,7 @@ from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError
 from hli_bench.base.loading import data_file
 from hli_bench.bench.result import Result
 from hli_bench.shells.plc_process import start as start_plc
-from hli_bench.shells.processes import Worker, free_endpoint
+from hli_bench.shells.processes import Pipe, Worker, free_endpoint, work
 from hli_bench.shells.trace_file import TraceEvent, TraceFile, read
 
 PATIENCE_S = 60.0
@@ -218,6 +219,27 @@ def test_a_worker_that_dies_is_named() -> None:
         os.kill(worker._process.pid, signal.SIGKILL)
         with pytest.raises(EnvironmentLacks, match="terminals_process has ended with status -9"):
             bench.advance(10)
+
+
+def test_a_worker_whose_bench_closes_while_it_answers_ends_in_order(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    ours, theirs = socket.socketpair()
+
+    def answer(pipe: Pipe, _: object) -> None:
+        ours.close()
+        pipe.send(b"numbers of a cycle that nobody waits for")
+
+    assert work(answer, [str(theirs.detach())]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_settings_of_tasks_that_other_scripts_replace_are_remarked() -> None:
+    notes: list[str] = []
+    script = data_file("plc_scripts", "probing.py")
+    with Bench("demo", {"plc.0.process": True}, plc=[script], on_note=notes.append):
+        pass
+    assert [note for note in notes if "plc.0.process has no effect" in note]
 
 
 def test_a_plc_process_that_ends_before_it_attached_is_told(tmp_path: Path) -> None:

@@ -186,3 +186,53 @@ def test_code_without_a_law_is_not_called() -> None:
 
     with pytest.raises(LookupError, match="no _ZN6stride"):
         native._address(Empty(), "_ZN6stride")
+
+
+INTERRUPTED = """
+import os, signal, threading
+from hli_bench.laws import compiler, native
+from hli_bench.shells.apart import apart
+
+def compile_laws():
+    print(threading.current_thread() is threading.main_thread(), flush=True)
+    os.kill(os.getpid(), signal.SIGINT)
+    threading.Event().wait()
+
+compiler.compile_laws = compile_laws
+try:
+    native.prepare(apart=apart)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+def test_ctrl_c_ends_compiling(tmp_path: Path) -> None:
+    """In the main thread it would be raised in what LLVM and numba call back, and be lost there."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    ended = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert ended.stdout.split() == ["False", "interrupted"], ended.stderr
+    assert ended.returncode == 0
+
+
+def test_what_is_wrong_with_compiling_is_raised(tmp_path: Path) -> None:
+    failing = INTERRUPTED.replace("    threading.Event().wait()\n", "").replace(
+        "os.kill(os.getpid(), signal.SIGINT)", "raise RuntimeError('no such law')"
+    )
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    ended = subprocess.run(
+        [sys.executable, "-c", failing],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert ended.returncode == 1
+    assert "RuntimeError: no such law" in ended.stderr

@@ -222,7 +222,7 @@ def test_modules_in_the_current_directory_are_none_of_the_bench(
     (tmp_path / "beside.py").write_text((SCRIPTS / "demo.py").read_text())
     (tmp_path / "mine.py").write_text("import beside\n\nclass Mine(beside.Demo):\n    pass\n")
     monkeypatch.chdir(tmp_path)
-    own = ("--plc", "mine.py", "--set", "plc.0.process=true")
+    own = ("--set", f"plc.0.script={tmp_path / 'mine.py'}", "--set", "plc.0.process=true")
     bench = serve("--pace", pace, *own)
     run = bench.run(probe)
     assert run.end() == 0, (run.err, bench.command.err)

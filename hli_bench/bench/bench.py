@@ -173,8 +173,8 @@ class Bench:
             self._tap.collector = None
             if self._door is not None:
                 self._door.state_changed()
-        status = "completed" if self.kernel.channel.completed else "error"
-        result = self._result(name, status if ended else "aborted", collector, first, watch, holding)
+        status = collector.status(completed=self.kernel.channel.completed) if ended else "aborted"
+        result = self._result(name, status, collector, first, watch, holding)
         if self._pace is not None:
             self._garbage.between_programs()
         return result
@@ -318,7 +318,7 @@ class Bench:
             script = load_script(plc.script)
             period_us = plc.period_us or script.period_us
             task = Task(plc.name, script, period_us, self.kernel.image.layout, self.terminal_layouts)
-            self.engine.attach(LocalPlc(task, self.config.cycle_ns))
+            self.engine.attach(LocalPlc(task, self.config.cycle_ns, self._on_note))
 
     def _start_plc_process(self, plc: PlcConfig) -> None:
         """Start a script as a process of its own and wait until it has attached."""

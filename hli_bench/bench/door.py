@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from hli_bench.base.errors import InputError, NotEmulated
 from hli_bench.base.time import Ns
-from hli_bench.bench.plc_ports import AttachedPlc, period_cycles
+from hli_bench.bench.plc_ports import ANSWER_S, SILENCE_S, AttachedPlc, period_cycles
 from hli_bench.bench.result import error_of
 from hli_bench.kernel.records import CncError, Emitted
 from hli_bench.protocols.hli.access import Refusal
@@ -24,8 +24,6 @@ from hli_bench.shells.zenoh_server import HliServer
 
 RESET_CYCLES: Final = 2000
 """Cycles within which the drives must be back after a reset, else it is answered all the same."""
-ANSWER_S: Final = 10.0
-"""Wall time in which an attached PLC must answer in lock-step; a dead one is noticed within the lease (0.5 s)."""
 
 
 class HliDoor:
@@ -127,7 +125,7 @@ class HliDoor:
                 self._attach(request)
             case RunProgram():
                 if self._engine.kernel.channel.running or self.programs:
-                    request.refuse("a program is running")
+                    request.refuse("a program is running; a CNC reset aborts it (hli-bench reset)")
                 else:
                     self.programs.append(request)
             case Reset():
@@ -177,7 +175,7 @@ class HliDoor:
             request.refuse(f"a PLC called {request.plc!r} is attached already")
             return
         port = AttachedPlc(
-            request.plc, cycles, self._server, self.publish, lockstep=self._lockstep, timeout_s=ANSWER_S
+            request.plc, cycles, self._server, self.publish, lockstep=self._lockstep, cycle_ns=cycle_ns
         )
         first = (engine.cycle // cycles + 1) * cycles
         if request.accept(cycle=first, cycle_us=cycle_ns // 1000, lockstep=self._lockstep):
@@ -190,8 +188,9 @@ class HliDoor:
         while self._engine.lost:
             name = self._engine.lost.pop()
             if self.attached(name):
+                patience_s = ANSWER_S if self._lockstep else SILENCE_S
                 self._on_note(
-                    f"PLC {name} is alive and has not answered cycle {self._engine.cycle} for {ANSWER_S:g} s: "
+                    f"PLC {name} is alive and has not answered for {patience_s:g} s, up to cycle {self._engine.cycle}: "
                     "it takes part no more until it attaches anew"
                 )
             self._server.detach(name)

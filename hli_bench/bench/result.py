@@ -105,6 +105,12 @@ class Collector:
         self.errors: list[Error] = []
         self.homing: list[Homing] = []
 
+    def status(self, *, completed: bool) -> str:
+        """Return how a program ended: without M02 or M30 by an error, or by a CNC reset."""
+        if completed:
+            return "completed"
+        return "error" if any(error.severity == "error" for error in self.errors) else "aborted"
+
     def take(self, records: Sequence[Emitted]) -> None:
         """Sort records by kind."""
         for record in records:

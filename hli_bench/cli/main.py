@@ -14,7 +14,21 @@ from typing import Final
 
 from hli_bench.base import garbage
 from hli_bench.base.errors import BenchError
-from hli_bench.cli import doctor, drive, hli, machine, params, plc, run, serve, state, sweep, trace, unbuilt
+from hli_bench.cli import (
+    doctor,
+    drive,
+    hli,
+    machine,
+    params,
+    plc,
+    reset,
+    run,
+    serve,
+    state,
+    sweep,
+    trace,
+    unbuilt,
+)
 
 INTERRUPTED: Final = 130
 """Exit status after Ctrl-C, as a shell reports it."""
@@ -34,7 +48,7 @@ def parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
     )
     commands = top.add_subparsers(dest="command", required=True, title="commands")
-    for module in (run, serve, plc, hli, state, params, drive, machine, trace, sweep, unbuilt, doctor):
+    for module in (run, serve, plc, hli, state, reset, params, drive, machine, trace, sweep, unbuilt, doctor):
         module.add(commands)
     return top
 

@@ -108,8 +108,6 @@ def execute(arguments: argparse.Namespace) -> int:
         finish(result.to_dict(), arguments.result)
     for failure in failures:
         print(failure, file=sys.stderr)
-    if result.late_cycles:
-        print(f"{result.late_cycles} of {result.cycles} cycles were late", file=sys.stderr)
     if result.status == "aborted" and arguments.limit is not None and result.sim_s >= arguments.limit:
         print(f"--limit: not done after {arguments.limit:g} s of machine time", file=sys.stderr)
         return EXIT_STATUS["error"]
@@ -144,6 +142,8 @@ def finish(result: Mapping[str, Any], file: str | None) -> None:
         f"in {result['wall_s']:.1f} s, {result['cycles']} cycles",
         file=sys.stderr,
     )
+    if result.get("late_cycles"):
+        print(f"{result['late_cycles']} of {result['cycles']} cycles were late", file=sys.stderr)
     for note in result["notes"]:
         print(f"note: {note}", file=sys.stderr)
     if file is not None:

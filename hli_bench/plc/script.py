@@ -59,6 +59,11 @@ def load(path: Path) -> Any:
 
 def script_error(error: Exception, path: Path) -> InputError:
     """Return `error` as the error of the script at `path`, with the line of the script that it came from."""
+    return InputError(f"{type(error).__name__}: {error}", str(path), line_of(error, path))
+
+
+def line_of(error: BaseException, path: Path) -> int:
+    """Return the innermost line of the script at `path` that an error came from, 0 when there is none."""
     frames = traceback.extract_tb(error.__traceback__)
     lines = [frame.lineno or 0 for frame in frames if Path(frame.filename).resolve() == path.resolve()]
-    return InputError(f"{type(error).__name__}: {error}", str(path), lines[-1] if lines else 0)
+    return lines[-1] if lines else 0

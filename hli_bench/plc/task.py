@@ -8,7 +8,7 @@ from typing import Any
 from hli_bench.base.time import Ns
 from hli_bench.plc.function_blocks import TASK_TIME
 from hli_bench.plc.names import Frame, Hli, io_root
-from hli_bench.plc.script import script_error
+from hli_bench.plc.script import line_of, script_error
 from hli_bench.protocols.hli.layout import Layout
 from hli_bench.wire.hli import Commands, Write
 from hli_bench.wire.images import TerminalLayout
@@ -47,6 +47,10 @@ class Task:
         self._cycle = script.cycle
         self._start = getattr(script, "start", None)
         self._paths = [element.path for element in layout.elements]
+
+    def place(self, error: BaseException) -> str:
+        """Return file and line of the script at which an error left it."""
+        return f"{self._file}:{line_of(error, self._file)}"
 
     def step(self, cycle: int, dc_ns: Ns, image: bytes | bytearray, io: Mapping[str, bytes]) -> Commands:
         """Run the script once on the HLI after kernel cycle `cycle` and the terminals' images by name.

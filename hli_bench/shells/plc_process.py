@@ -19,7 +19,7 @@ from hli_bench.base.loading import child_command
 from hli_bench.plc import Task, load
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
 from hli_bench.shells.zenoh_client import HliClient
-from hli_bench.shells.zenoh_session import on_network_thread, payload
+from hli_bench.shells.zenoh_session import PLC_LEASE_MS, on_network_thread, payload
 
 RECONNECT_S: Final = 2.0
 """How long a PLC waits for a bench that vanished before it ends; a link comes back in 0.2 s."""
@@ -198,7 +198,7 @@ def attach(
     Raises EnvironmentLacks when no bench is there, InputError when the script fails or the bench refuses it.
     """
     load(script)
-    with HliClient(endpoint, machine) as client:
+    with HliClient(endpoint, machine, PLC_LEASE_MS) as client:
         ScriptClient(client, script, name or script.stem, period_us, on_line).run()
 
 

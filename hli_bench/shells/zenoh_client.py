@@ -9,7 +9,7 @@ import zenoh
 
 from hli_bench.base.errors import EnvironmentLacks, InputError
 from hli_bench.protocols.hli.layout import Layout
-from hli_bench.shells.zenoh_session import TEXT, connect, payload, queued
+from hli_bench.shells.zenoh_session import LEASE_MS, TEXT, connect, payload, queued
 from hli_bench.wire.images import TerminalLayout
 
 ANSWER_S: Final = 5.0
@@ -21,13 +21,13 @@ PROGRAM_S: Final = 24 * 3600.0
 class HliClient:
     """A client's session with one bench; use it as a context manager."""
 
-    def __init__(self, endpoint: str, machine: str = "") -> None:
-        """Connect; without `machine` the bench is asked for its name.
+    def __init__(self, endpoint: str, machine: str = "", lease_ms: int = LEASE_MS) -> None:
+        """Connect; without `machine` the bench is asked for its name. It lets go of who is silent for `lease_ms`.
 
         Raises EnvironmentLacks when nobody listens on `endpoint` or no bench answers there.
         """
         self.endpoint = endpoint
-        self.session = connect(endpoint)
+        self.session = connect(endpoint, lease_ms)
         try:
             answers = self._ask(f"{machine or '*'}/hli/layout")
             key, layout = next(iter(answers.items()), ("", b""))

@@ -1,4 +1,4 @@
-"""How a Zenoh session is opened: no scouting, no gossip, no shared memory, a lease of 500 ms."""
+"""How a Zenoh session is opened: no scouting, no gossip, no shared memory; how long it may be silent."""
 
 import json
 import os
@@ -10,8 +10,10 @@ import zenoh
 from hli_bench.base.errors import EnvironmentLacks
 
 DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
-LEASE_MS: Final = 500
-"""A session that says nothing for so long is gone: this is how a frozen PLC is noticed."""
+PLC_LEASE_MS: Final = 500
+"""A PLC's session that says nothing for so long is gone: this is how a frozen PLC is noticed."""
+LEASE_MS: Final = 30_000
+"""The same of a bench and of who only asks: they may stand for a while. One that ends closes its sockets."""
 
 PACED_PATIENCE_US: Final = 1000
 """How long a put of a bench in real pace may wait for a link that is full before the message is dropped."""
@@ -21,6 +23,7 @@ PATIENCE_US: Final = 100_000
 TEXT: Final = zenoh.Encoding.TEXT_PLAIN
 JSON: Final = zenoh.Encoding.APPLICATION_JSON
 PACKED: Final = zenoh.Encoding.APPLICATION_OCTET_STREAM
+LEASE: Final = "transport/link/tx/lease"
 DROP_AFTER: Final = "transport/link/tx/queue/congestion_control/drop/wait_before_drop"
 _RUNTIME: Final = "ZENOH_RUNTIME"
 _FEWER_THREADS: Final = "(acc: (handover: rx), app: (handover: rx))"
@@ -45,10 +48,11 @@ def listen(endpoint: str, *, lockstep: bool = True) -> Any:
         ) from error
 
 
-def connect(endpoint: str) -> Any:
+def connect(endpoint: str, lease_ms: int = LEASE_MS) -> Any:
     """Open a client's session to `endpoint`. Raises EnvironmentLacks when nobody listens there."""
     try:
-        return _open("client", {"connect/endpoints": [endpoint], DROP_AFTER: PATIENCE_US}, fewer_threads=True)
+        settings = {"connect/endpoints": [endpoint], DROP_AFTER: PATIENCE_US, LEASE: lease_ms}
+        return _open("client", settings, fewer_threads=True)
     except zenoh.ZError as error:
         raise EnvironmentLacks(
             f"no bench listens on {endpoint} ({_reason(error)}); start one with `hli-bench serve`"
@@ -94,7 +98,7 @@ def _config(mode: str, settings: dict[str, Any]) -> zenoh.Config:
         "scouting/gossip/enabled": False,
         "scouting/delay": 0,
         "transport/shared_memory/enabled": False,
-        "transport/link/tx/lease": LEASE_MS,
+        LEASE: LEASE_MS,
         **settings,
     }
     for key, value in settings.items():

@@ -1,9 +1,12 @@
 """What a bench does when something goes wrong around a program."""
 
+import re
+
 import pytest
 
 from hli_bench import Bench
 from hli_bench.base.errors import InputError, NotEmulated
+from hli_bench.bench import plc_ports
 
 
 def test_a_program_that_breaks_off_leaves_no_gap_in_time() -> None:
@@ -54,6 +57,49 @@ def test_a_script_that_fails_takes_part_no_more(tmp_path) -> None:
         with pytest.raises(InputError, match=r"broken\.py"):
             bench.run("%a\nN10 G04 1\nM30\n")
         assert not bench.engine.plcs
+        assert bench.run("%b\nN10 G04 0.1\nM30\n").completed
+
+
+ENDLESS = """
+from threading import Event
+from time import sleep
+from hli_bench.plc import Plc
+
+class Endless(Plc):
+    period_us = 1000
+    count = 0
+
+    def cycle(self, hli, io):
+        self.count += 1
+        while self.count > 20:
+            try:
+                {step}
+            except Exception:
+                pass
+"""
+PLC_STOPPED = 40011
+
+
+@pytest.mark.parametrize("step", ["pass", "sleep(3600)", "Event().wait()"])
+def test_a_script_that_does_not_return_is_a_plc_that_stopped(tmp_path, monkeypatch, step) -> None:
+    """Whether it computes or waits: it is named, the CNC reacts, and the bench goes on without it."""
+    monkeypatch.setattr(plc_ports, "ANSWER_S", 0.3)
+    script = tmp_path / "endless.py"
+    script.write_text(ENDLESS.format(step=step))
+    notes: list[str] = []
+    with Bench("demo", plc=[script], on_note=notes.append) as bench:
+        result = bench.run("%a\nN10 G04 1\nM30\n")
+        assert [error.id for error in result.errors] == [PLC_STOPPED]
+        (note,) = notes
+        loop = 1 + ENDLESS.splitlines().index("        while self.count > 20:")
+        found = re.fullmatch(
+            r"PLC endless has not returned from cycle \d+ for 0\.3 s \((.*):(\d+)\): it takes part no more",
+            note,
+        )
+        assert found, note
+        assert found[1] == str(script)
+        assert loop <= int(found[2]) <= loop + 2
+        bench.reset()
         assert bench.run("%b\nN10 G04 0.1\nM30\n").completed
 
 

@@ -5,6 +5,7 @@ import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
@@ -184,7 +185,30 @@ def test_a_second_program_is_refused_while_one_runs(
     bench = serve("--pace", "real")
     bench.run(endless)
     assert bench.running()
-    assert do("run", endless, "--connect", bench.endpoint, status=2) == ["a program is running"]
+    assert do("run", endless, "--connect", bench.endpoint, status=2) == [
+        "a program is running; a CNC reset aborts it (hli-bench reset)"
+    ]
+
+
+def test_a_reset_aborts_a_program(serve: Any, endless: Path, do: Callable[..., list[str]]) -> None:
+    bench = serve("--pace", "real")
+    run = bench.run(endless)
+    assert bench.running()
+    assert do("reset", "--connect", bench.endpoint) == []
+    assert bench.state()["state"] == "ready"
+    assert run.end() == 130
+
+
+def test_a_bench_that_stands_for_a_while_loses_no_client(serve: Any, program: Callable[[str], Path]) -> None:
+    """Longer than a PLC may be silent: a computer that was suspended must not cost the result."""
+    bench = serve("--plc", "none", "--pace", "real")
+    run = bench.run(program('N10 G01 G90 Z280 F600\nN20 #MSG SYN["there"]\nN30 M30\n'))
+    assert bench.running()
+    os.kill(bench.command.process.pid, signal.SIGSTOP)
+    Event().wait(1.5)
+    os.kill(bench.command.process.pid, signal.SIGCONT)
+    assert run.end() == 0, run.err
+    assert run.out == ["there"]
 
 
 def test_bad_input_in_a_program_is_told_by_file_and_line(

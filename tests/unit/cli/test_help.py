@@ -8,8 +8,8 @@ import pytest
 from hli_bench.cli.main import main, parser
 
 COMMANDS = [
-    *("run", "serve", "plc", "hli", "state", "params", "drive", "machine"),
-    *("inject", "clear", "sweep", "scope", "trace", "doctor"),
+    *("run", "serve", "plc", "hli", "state", "reset", "params"),
+    *("drive", "machine", "inject", "clear", "sweep", "scope", "trace", "doctor"),
 ]
 ACTIONS = {
     "hli": "{ls,get,set,watch}",

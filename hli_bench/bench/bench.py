@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.time import NS_PER_S
 from hli_bench.bench import build, state
-from hli_bench.bench.config import MachineConfig, PlcConfig, load
+from hli_bench.bench.config import MachineConfig, PlcConfig
 from hli_bench.bench.faceless import nothing_to_probe
+from hli_bench.bench.folder import load
 from hli_bench.bench.plc_ports import LocalPlc
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.bench.standstill import Standstill

@@ -13,7 +13,7 @@ import numpy as np
 
 from hli_bench.base.errors import EnvironmentLacks
 from hli_bench.bench import build, telegraph
-from hli_bench.bench.config import load
+from hli_bench.bench.folder import load
 from hli_bench.bench.telegraph import Numbers, Order
 from hli_bench.laws.native import bind
 from hli_bench.laws.rows import AXIS, Rows

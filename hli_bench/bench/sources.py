@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from hli_bench.base.errors import InputError
+from hli_bench.base.loading import text_of
 from hli_bench.manual.lists import flatten
 
 SET: Final = "--set"
@@ -36,20 +37,22 @@ class Given:
         return InputError(message, self.file, self.line)
 
 
-def read_toml(path: Path) -> dict[str, Given]:
-    """Return the values of a TOML file by dotted path. Raises InputError with file and line."""
+def toml_text(path: Path) -> str:
+    """Return the text of a TOML file. Raises InputError when it cannot be read."""
     try:
-        text = path.read_text(encoding="utf-8")
+        return text_of(path)
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", file=str(path)) from error
     except UnicodeDecodeError as error:
         raise InputError("is not UTF-8 text", file=str(path)) from error
-    return dict(_read_text(text, str(path)))
 
 
 @lru_cache(maxsize=64)
-def _read_text(text: str, file: str) -> Mapping[str, Given]:
-    """Return the values of a TOML text; the same text is read once a process."""
+def read_toml(text: str, file: str) -> Mapping[str, Given]:
+    """Return the values of a TOML text by dotted path, once a process for the same text.
+
+    Raises InputError with file and line.
+    """
     lines = line_numbers(text)
     tree = toml_tree(text, file)
     return {key: Given(value, file, line_of(lines, key)) for key, value in flatten(tree).items()}

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from hli_bench.base.time import Ns
 from hli_bench.bench import build, telegraph
-from hli_bench.bench.config import load
+from hli_bench.bench.folder import load
 from hli_bench.laws.channels import advance_channels
 from hli_bench.laws.native import bind
 from hli_bench.laws.rows import MachineRows

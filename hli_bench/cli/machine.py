@@ -40,7 +40,7 @@ def add(commands: Commands) -> None:
 
 def copy_machine(arguments: argparse.Namespace) -> int:
     """Copy the folder. Raises InputError when there is no such machine, or the new folder exists."""
-    from hli_bench.bench.config import machine_folder
+    from hli_bench.bench.folder import machine_folder
 
     source, target = machine_folder(machine_name(arguments.machine, "")), Path(arguments.folder)
     try:
@@ -66,7 +66,7 @@ def check_machine(arguments: argparse.Namespace) -> int:
     """Check the folder and all it names. Raises InputError, and NotEmulated for what is not built."""
     if arguments.modbus:
         raise NotEmulated("machine check --modbus is not built yet")
-    from hli_bench.bench.config import load
+    from hli_bench.bench.folder import load
     from hli_bench.bench.sources import parse_set
 
     config = load(machine_name(arguments.machine, ""), parse_set(arguments.set or []))

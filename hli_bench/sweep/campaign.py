@@ -10,7 +10,7 @@ from typing import Any, Final, cast
 
 from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.loading import data_file
-from hli_bench.bench.config import load, machine_folder
+from hli_bench.bench.folder import load, machine_folder
 from hli_bench.bench.sources import NUMBERED, SET, line_numbers, line_of, toml_tree
 from hli_bench.sweep.draws import FORMS, Choice, Distribution, Integers, Plain, distribution, share
 from hli_bench.sweep.expressions import metric

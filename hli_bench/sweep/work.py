@@ -71,18 +71,18 @@ def nc_text(text: str, settings: Mapping[str, Plain]) -> str:
 def run_chunk(job: Job, runs: Sequence[Run]) -> list[Row | Failure]:
     """Do some runs, up to the first that cannot be; called in a worker process."""
     rows: list[Row | Failure] = []
+    machine = Path(job.machine) if Path(job.machine).is_absolute() else job.machine
     for run in runs:
         try:
-            rows.append(_row(job, run))
+            rows.append(_row(job, machine, run))
         except BenchError as error:
             rows.append(Failure(run.number, str(error), error.exit_status))
             break
     return rows
 
 
-def _row(job: Job, run: Run) -> Row:
+def _row(job: Job, machine: Path | str, run: Run) -> Row:
     settings = {key: value for key, value in run.settings.items() if not key.startswith(PROGRAM)}
-    machine = Path(job.machine) if Path(job.machine).is_absolute() else job.machine
     with Bench(machine, settings, plc=job.plc) as bench:
         result = bench.run(nc_text(job.text, run.settings).splitlines(), job.program_name)
     return Row(

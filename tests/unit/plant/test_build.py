@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hli_bench.bench.config import load
+from hli_bench.bench.folder import load
 from hli_bench.plant.build import NOISE_LIMIT, Plant, build
 
 PER_MM = 104_857.6

@@ -1,13 +1,17 @@
 """The machine folder: the demo, overrides, and every wrong key by file, line, key, value, what is permitted."""
 
+import re
+import shutil
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from hli_bench.base.errors import InputError, NotEmulated
+from hli_bench.base import loading
+from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.base.loading import data_file
-from hli_bench.bench import schema
-from hli_bench.bench.config import load
+from hli_bench.bench import folder, schema
+from hli_bench.bench.folder import load
 from hli_bench.bench.sources import line_numbers, parse_set
 from hli_bench.plant.settings import Face
 
@@ -260,3 +264,78 @@ def test_the_schema_names_every_key_once() -> None:
 
 def test_machine_names_lead_to_the_package() -> None:
     assert data_file("machines", "demo").joinpath("machine.toml").is_file()
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        {"plant.probe.Z.face_mm": 1.5},
+        {"plant.probe.pretravel_um": 3.0, "plant.cam.X.to_mm": -450.0},
+        {"plant.cam.X.from_mm": 100.0},
+        {"plant.axis.Y.pitch_mm": 5.0, "axis.Y.start_mm": 7.0},
+        {"plant.axis.X.increments_per_turn": 2**31},
+        {"axis.Z.start_mm": 1e9},
+        {"axis.X.kopf.achs_nr": 2},
+        {"axis.Y.node_id": 1},
+        {"axis.Y.node_id": 200},
+        {"axis.Z.probe_input_1": "cam.X"},
+        {"axis.Z.probe_input_1": "cam.Q"},
+        {"axis.Z.kenngr.measure.signal": "PLC"},
+        {"axis.Z.kenngr.measure.signal": "NONE"},
+        {"axis.Z.kenngr.achs_typ": 2},
+        {"axis.Z.list": "x.lis"},
+        {"axis.Z.list": "none.lis"},
+        {"axis.Q.start_mm": 1.0},
+        {"channel.messtyp": 7},
+        {"channel.messtyp": 70},
+        {"seed": 5, "cycle_us": 2000},
+        {"cycle_us": 3000, "plc.0.period_us": 4000},
+        {"dc_epoch": "2030-01-01T00:00:00Z"},
+        {"terminal.probe.wiring.ch1": "cam.X"},
+        {"terminal.probe.wiring.ch1": "nothing"},
+        {"terminal.probe.period_us": 1500},
+        {"plc": []},
+        {"plc": [{"script": "demo.py", "period_us": 4000}]},
+        {"plc.0.name": "other", "plc.3.script": "demo.py"},
+        {"fault": [{"kind": "probe_stuck", "at_ms": 5.0}], "plant.probe.Z.face_mm": 1.0},
+        {"fault.0.kind": "probe_stuck", "fault.0.target": "cam.Z"},
+        {"fault.0.kind": "probe_stuck", "fault.0.target": "cam.Q"},
+        {"nonsense": 1, "plant.probe.Z.face_mm": "here"},
+    ],
+    ids=str,
+)
+def test_what_an_override_leaves_alone_is_kept_and_all_else_is_worked_out(
+    overrides: Mapping[str, object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Loading on top of what the same folder gave before comes to what loading all of it does, errors too."""
+
+    def outcome() -> object:
+        try:
+            return load("demo", overrides)
+        except BenchError as error:
+            return type(error), str(error)
+
+    load("demo")
+    on_top = outcome()
+    monkeypatch.setattr(folder, "_plain", lambda *_: None)
+    assert on_top == outcome()
+
+
+def test_a_file_that_changes_is_read_anew(tmp_path: Path) -> None:
+    shutil.copytree(data_file("machines", "demo"), tmp_path / "mine")
+    file = tmp_path / "mine" / "machine.toml"
+    for start_mm in (1.0, 2.0, 3.0):
+        file.write_text(re.sub(r"start_mm = [\d.]+", f"start_mm = {start_mm}", file.read_text(), count=1))
+        assert start_mm in [axis.start_mm for axis in load(file.parent, {"seed": 1}).axes]
+
+
+def test_the_text_of_an_old_file_is_kept_while_it_is_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "list.lis"
+    file.write_text("one")
+    monkeypatch.setattr(loading, "_FRESH_NS", -1)
+    first = loading.text_of(file)
+    assert loading.text_of(file) is first
+    file.write_text("three")
+    assert loading.text_of(file) == "three"

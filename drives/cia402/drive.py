@@ -56,6 +56,23 @@ _SOURCES: Final = (
 )
 _DEFAULT_SOURCES: Final = (int(ProbeSource.INPUT_1), int(ProbeSource.INPUT_2))
 
+_CELLS: Final[Mapping[tuple[int, int], tuple[str, int]]] = {
+    objects.TARGET_POSITION: ("target", 0),
+    objects.POSITION_DEMAND: ("demand", 0),
+    objects.POSITION_DEMAND_INTERNAL: ("demand", 0),
+    objects.POSITION_ACTUAL: ("position", 0),
+    objects.POSITION_INTERNAL: ("position", 0),
+    objects.VELOCITY_ACTUAL: ("velocity", 0),
+    objects.FOLLOWING_ERROR: ("following_error", 0),
+    objects.TORQUE_ACTUAL: ("torque_permille", 0),
+    objects.PROBE_STATUS: ("probe_status", 0),
+    objects.DIGITAL_INPUTS: ("digital_inputs", 0),
+    objects.ENCODER_INCREMENTS: ("increments_per_turn", 0),
+    **{address: ("latch", slot) for slot, address in enumerate(objects.LATCHES)},
+    **{address: ("latch_time", slot) for slot, address in enumerate(objects.LATCH_TIMES)},
+}
+"""Objects that are a number of the row: its name, its element."""
+
 _QUICK_STOP, _RESET_FAULT = 11, 15
 _STAY_IN_QUICK_STOP: Final = 5
 """Quick stop options from here on stay in QUICK STOP ACTIVE."""
@@ -274,48 +291,33 @@ class Drive:
 
     def _hook_reads(self, cells: Cells) -> None:
         """Let the objects of the machine's numbers answer from the row."""
-        sources: dict[ObjectAddress, Callable[[], Value]] = {
+        values = self.device.values
+        values.on_reads(_CELLS, lambda address: partial(cells(*_CELLS[address]).__getitem__, 0))
+        words: dict[ObjectAddress, Callable[[], Value]] = {
             objects.STATUSWORD: lambda: self.statusword,
             objects.CONTROLWORD: lambda: self._word,
             objects.PROBE_FUNCTION: self._read_probe_function,
             objects.MODE_DISPLAY: lambda: self._option(objects.MODE),
             objects.RATED_TORQUE: lambda: round(float(self._row["rated_torque"]) * 1000.0),
         }
-        names = {
-            objects.TARGET_POSITION: "target",
-            objects.POSITION_DEMAND: "demand",
-            objects.POSITION_DEMAND_INTERNAL: "demand",
-            objects.POSITION_ACTUAL: "position",
-            objects.POSITION_INTERNAL: "position",
-            objects.VELOCITY_ACTUAL: "velocity",
-            objects.FOLLOWING_ERROR: "following_error",
-            objects.TORQUE_ACTUAL: "torque_permille",
-            objects.PROBE_STATUS: "probe_status",
-            objects.DIGITAL_INPUTS: "digital_inputs",
-            objects.ENCODER_INCREMENTS: "increments_per_turn",
-        }
-        sources |= {address: _reader(cells, name) for address, name in names.items()}
-        for slot, (position, time) in enumerate(zip(objects.LATCHES, objects.LATCH_TIMES, strict=True)):
-            sources[position] = _reader(cells, "latch", slot)
-            sources[time] = _reader(cells, "latch_time", slot)
-        for address, source in sources.items():
-            self.device.values.on_read(*address, source)
+        for address, word in words.items():
+            values.on_read(*address, word)
 
     def _hook_writes(self) -> None:
         """Let writes from the bus reach the row and the state machine."""
-        sinks: dict[ObjectAddress, Callable[[Value], None]] = {
+        row = self._row
+        sinks: dict[tuple[int, int], Callable[[Value], None]] = {
             objects.CONTROLWORD: self._write_controlword,
             objects.TARGET_POSITION: self._write_target,
             objects.PROBE_FUNCTION: self._write_probe_function,
             objects.MODE: self._write_mode,
-            objects.FOLLOWING_WINDOW: partial(_store, self._row, "following_window"),
-            objects.FOLLOWING_TIMEOUT: partial(_store, self._row, "following_timeout_ms"),
+            objects.FOLLOWING_WINDOW: partial(row.__setitem__, "following_window"),
+            objects.FOLLOWING_TIMEOUT: partial(row.__setitem__, "following_timeout_ms"),
         }
         sinks |= {address: partial(self._limit_torque, address) for address in _TORQUE_LIMITS}
         for slot, address in enumerate(objects.PROBE_SOURCES):
             sinks[address] = partial(self._write_source, slot)
-        for address, sink in sinks.items():
-            self.device.values.on_write(*address, sink)
+        self.device.values.on_writes(sinks)
 
     def _write_controlword(self, value: Value) -> None:
         """Run the state machine; the same word again changes nothing."""
@@ -433,11 +435,3 @@ def _check(description: ObjectDictionary, eds_path: Path) -> None:
         if (index, subindex) not in description:
             message = f"a CiA 402 drive needs object 0x{index:04X}:{subindex:02X}"
             raise InputError(message, file=str(eds_path))
-
-
-def _reader(cells: Cells, name: str, element: int = 0) -> Callable[[], int]:
-    return partial(cells(name, element).__getitem__, 0)
-
-
-def _store(row: Any, name: str, value: Value) -> None:
-    row[name] = value

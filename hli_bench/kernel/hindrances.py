@@ -29,7 +29,7 @@ def holding(core: Core) -> list[str]:
 
 def unheard(core: Core) -> list[str]:
     """Return the control units with `enable_w` TRUE whose commands count for nothing, and why."""
-    return [f"{unit.path}: {unit.unheard}" for unit in core.units if unit.enabled and unit.unheard]
+    return [f"{unit.path}: {unit.unheard}" for unit in core.units.enabled() if unit.unheard]
 
 
 def in_vain(core: Core, member: str) -> str:

@@ -1,6 +1,6 @@
 """The values behind an object dictionary: typed store, access rules, hooks, what is kept over a reset."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache, partial
 
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
@@ -22,18 +22,20 @@ ALL_OBJECTS = range(0x1000, 0x10000)
 
 
 class _Getters(dict[tuple[int, int], ReadHook]):
-    """Read hooks by address; what has none is read from the stored values, by a getter made when first asked for."""
+    """Read hooks by address, each made when first asked for; what has none is read from the stored values."""
 
-    __slots__ = ("_values",)
+    __slots__ = ("_values", "makers")
 
     def __init__(self, values: dict[tuple[int, int], Value]) -> None:
         super().__init__()
         self._values = values
+        self.makers: dict[tuple[int, int], Callable[[tuple[int, int]], ReadHook]] = {}
 
     def __missing__(self, address: tuple[int, int]) -> ReadHook:
         if address not in self._values:
             raise KeyError(address)
-        getter = self[address] = partial(self._values.__getitem__, address)
+        make = self.makers.get(address)
+        getter = self[address] = partial(self._values.__getitem__, address) if make is None else make(address)
         return getter
 
 
@@ -58,7 +60,7 @@ class ObjectValues:
         self._entries = description.entries
         self._defaults = self._factory()
         self._values = dict(self._defaults)
-        self.getters: dict[tuple[int, int], ReadHook] = _Getters(self._values)
+        self.getters = _Getters(self._values)
         """How each object is read; a dictionary of its own so that a PDO packs without detours."""
         self._write_hooks: dict[tuple[int, int], WriteHook] = {}
         self._record_hooks: dict[int, RecordHook] = {}
@@ -71,27 +73,43 @@ class ObjectValues:
         self.getters[index, subindex] = hook
         self.hooked()
 
+    def on_reads(
+        self, addresses: Iterable[tuple[int, int]], make: Callable[[tuple[int, int]], ReadHook]
+    ) -> None:
+        """Let the hooks that `make` gives for an address answer reads of many objects, each made when it is needed."""
+        makers = dict.fromkeys(addresses, make)
+        self._check(makers)
+        self.getters.makers.update(makers)
+        for address in makers:
+            self.getters.pop(address, None)
+        self.hooked()
+
     def on_write(self, index: int, subindex: int, hook: WriteHook) -> None:
         """Let `hook` check and follow writes from the bus (SDO and RPDO) to an object."""
         self._entry(index, subindex)
         self._write_hooks[index, subindex] = hook
         self.hooked()
 
-    def on_write_record(self, index: int, hook: RecordHook) -> None:
-        """Let `hook` check and follow writes from the bus to any sub-index of an object."""
-        self._entry(index, 0)
-        self._record_hooks[index] = hook
+    def on_writes(self, hooks: Mapping[tuple[int, int], WriteHook]) -> None:
+        """Let each hook check and follow writes from the bus to its object."""
+        self._check(hooks)
+        self._write_hooks.update(hooks)
+        self.hooked()
+
+    def on_write_records(self, hooks: Mapping[int, RecordHook]) -> None:
+        """Let each hook check and follow writes from the bus to any sub-index of its object."""
+        for index in hooks:
+            self._entry(index, 0)
+        self._record_hooks.update(hooks)
         self.hooked()
 
     def get(self, index: int, subindex: int = 0) -> Value:
         """Return the present value. Raises SdoAbort when there is no such object."""
-        hook = self.getters.get((index, subindex))
-        if hook is not None:
-            return hook()
         try:
-            return self._values[index, subindex]
+            hook = self.getters[index, subindex]
         except KeyError:
             raise self._missing(index) from None
+        return hook()
 
     def number(self, index: int, subindex: int = 0) -> int:
         """Return the present value of an integer object. Raises TypeError for strings and domains."""
@@ -189,6 +207,12 @@ class ObjectValues:
 
     def _factory(self) -> dict[tuple[int, int], Value]:
         return dict(_factory(self.description, self.node_id))
+
+    def _check(self, hooks: Mapping[tuple[int, int], object]) -> None:
+        """Raise SdoAbort when one of the objects is not there."""
+        if not hooks.keys() <= self._entries.keys():
+            for address in hooks:
+                self._entry(*address)
 
     def _entry(self, index: int, subindex: int) -> Entry:
         try:

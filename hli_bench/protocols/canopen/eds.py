@@ -106,11 +106,16 @@ class ObjectDictionary:
 
     def subindices(self, index: int) -> tuple[int, ...]:
         """Return the sub-indices of an array or a record behind its count in 0."""
-        return tuple(takewhile(lambda sub: (index, sub) in self.entries, range(1, 0xFF)))
+        return _subindices(self, index)
 
     def has_object(self, index: int) -> bool:
         """Whether any sub-index of `index` exists."""
         return index in self.names
+
+
+@lru_cache(maxsize=1024)
+def _subindices(description: ObjectDictionary, index: int) -> tuple[int, ...]:
+    return tuple(takewhile(lambda sub: (index, sub) in description.entries, range(1, 0xFF)))
 
 
 def load(path: Path) -> ObjectDictionary:

@@ -12,7 +12,7 @@ from hli_bench.base.errors import InputError
 from hli_bench.base.time import NS_PER_MS, NS_PER_US, Ns
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.datatypes import STRUCT_CODES, DataType, Value, integer_range, size_of
-from hli_bench.protocols.canopen.dictionary import ObjectValues, ReadHook, WriteHook
+from hli_bench.protocols.canopen.dictionary import ObjectValues, ReadHook, RecordHook, WriteHook
 from hli_bench.protocols.canopen.eds import Entry, ObjectDictionary
 from hli_bench.wire.can import CanFrame
 
@@ -111,6 +111,37 @@ def _check_dummy(index: int, subindex: int, bits: int) -> None:
         raise SdoAbort(AbortCode.NOT_MAPPABLE)
 
 
+_Parameters = tuple[int, int, PdoPlan]
+"""COB-ID with its bits, transmission type, plan."""
+
+
+def _parameters(values: ObjectValues, communication: int, *, sending: bool) -> _Parameters:
+    """Return the parameters of a PDO as they stand in the dictionary. Raises InputError (broken EDS)."""
+    mapping = communication + MAPPING_OFFSET
+    try:
+        cob_word, transmission, count = (
+            values.number(communication, _Parameter.COB_ID),
+            values.number(communication, _Parameter.TYPE),
+            values.number(mapping, 0),
+        )
+    except SdoAbort as abort:
+        message = f"0x{communication:04X} and 0x{mapping:04X} lack an object that a PDO needs"
+        raise InputError(message) from abort
+    try:
+        words = tuple(values.number(mapping, subindex) for subindex in range(1, count + 1))
+        return cob_word, transmission, make_plan(values.description, words, sending=sending)
+    except SdoAbort as abort:
+        raise InputError(f"default mapping of 0x{mapping:04X}: {abort}") from abort
+
+
+@lru_cache(maxsize=4096)
+def _from_factory(
+    description: ObjectDictionary, node_id: int, communication: int, *, sending: bool
+) -> _Parameters:
+    """Return the parameters that a node has by its EDS, worked out once a process."""
+    return _parameters(ObjectValues(description, node_id), communication, sending=sending)
+
+
 class _Pdo:
     """Parameters of one PDO and the rules by which they may change.
 
@@ -138,12 +169,12 @@ class _Pdo:
         self._communication = communication
         self._mapping = communication + MAPPING_OFFSET
         self.sending = sending
-        try:
-            self._hook()
-            self.reload()
-        except SdoAbort as abort:
-            message = f"0x{communication:04X} and 0x{self._mapping:04X} lack an object that a PDO needs"
-            raise InputError(message) from abort
+        self._take(_from_factory(values.description, values.node_id, communication, sending=sending))
+
+    @property
+    def hooks(self) -> dict[int, RecordHook]:
+        """What follows writes to its parameters, by object."""
+        return {self._communication: self._write_parameter, self._mapping: self._write_mapping}
 
     def start(self) -> None:
         """Begin anew, on entering OPERATIONAL."""
@@ -164,21 +195,13 @@ class _Pdo:
         return self.cob_word, self.transmission, self.plan.mapping
 
     def reload(self) -> None:
-        """Take over the values of the dictionary after power-on or reset. Raises InputError (broken EDS)."""
-        self._identify(self._values.number(self._communication, _Parameter.COB_ID))
-        self.transmission = self._values.number(self._communication, _Parameter.TYPE)
-        count = self._values.number(self._mapping, 0)
-        try:
-            self.plan = make_plan(self._values.description, self._entries(count), sending=self.sending)
-        except SdoAbort as abort:
-            raise InputError(f"default mapping of 0x{self._mapping:04X}: {abort}") from abort
+        """Take over the values of the dictionary after a reset. Raises InputError (broken EDS)."""
+        self._take(_parameters(self._values, self._communication, sending=self.sending))
         self._changed()
 
-    def _hook(self) -> None:
-        for needed in (_Parameter.COB_ID, _Parameter.TYPE):
-            self._values.entry(self._communication, needed)
-        self._values.on_write_record(self._communication, self._write_parameter)
-        self._values.on_write_record(self._mapping, self._write_mapping)
+    def _take(self, parameters: _Parameters) -> None:
+        cob_word, self.transmission, self.plan = parameters
+        self._identify(cob_word)
 
     def _write_parameter(self, subindex: int, value: Value) -> None:
         match subindex:
@@ -403,6 +426,8 @@ class PdoSet:
         received, sent = _communication(values.description)
         self.rpdos = tuple(Rpdo(values, index, self._changed) for index in received)
         self.tpdos = tuple(Tpdo(values, index, self._changed) for index in sent)
+        for pdo in (*self.rpdos, *self.tpdos):
+            values.on_write_records(pdo.hooks)
 
     @property
     def signature(self) -> tuple[Signature, ...]:

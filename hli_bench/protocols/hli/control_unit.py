@@ -6,9 +6,12 @@ at once and `request_r` is not supplied. A unit counts only while `head.plc_pres
 is TRUE.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 
 from hli_bench.protocols.hli.image import Image, Value
+from hli_bench.protocols.hli.layout import Layout
 
 
 class ControlUnit:
@@ -87,50 +90,72 @@ class ControlUnit:
 
 
 class ControlUnits:
-    """All control units of an image in which no PLC has written yet; only those it writes to are looked at."""
+    """All control units of an image in which no PLC has written yet.
 
-    __slots__ = ("_by_element", "_image", "_units")
+    A unit is made when it is asked for or written to; before that it has nothing to say.
+    """
+
+    __slots__ = ("_defaults", "_image", "_units", "_wiring")
 
     def __init__(self, image: Image, defaults: Mapping[str, Value]) -> None:
         """`defaults` gives the GUI's value by the last part of a unit's path; others start FALSE or 0."""
         self._image = image
+        self._defaults = defaults
+        self._wiring = _wiring(image.layout)
         self._units: dict[str, ControlUnit] = {}
-        self._by_element: dict[int, tuple[ControlUnit, ...]] = {}
-        for path, group in image.layout.groups.items():
-            ids = group.ids
-            if "enable_w" not in ids or "command_w" not in ids:
-                continue
-            zero = False if image.layout.elements[ids["command_w"]].type == "BOOL" else 0
-            unit = ControlUnit(image, path, defaults.get(path.rpartition("/")[2], zero))
-            self._units[path] = unit
-            self._by_element |= dict.fromkeys(ids.values(), (unit,))
-        self._add_presence()
 
     def __getitem__(self, name: str) -> ControlUnit:
         """Return the unit that `name` means (path, ST form or old name)."""
-        return self._units[self._image.layout.resolve(name)]
+        return self._unit(self._image.layout.resolve(name))
 
     def __contains__(self, path: str) -> bool:
-        return path in self._units
+        return path in self._wiring.zeros
 
-    def __iter__(self) -> Iterator[ControlUnit]:
-        return iter(self._units.values())
+    def enabled(self) -> list[ControlUnit]:
+        """Return the units for which a PLC has switched redirection on."""
+        image = self._image
+        return [self._unit(path) for path, enable in self._wiring.enables.items() if image.get(enable)]
 
     def sample(self) -> list[ControlUnit]:
         """Sample once a kernel cycle: return the units whose effective value or redirection changed."""
         written = self._image.take_written()
         if not written:
             return []
-        touched = {unit.path: unit for element in written for unit in self._by_element.get(element, ())}
-        return [unit for unit in touched.values() if unit.sample()]
+        touched = dict.fromkeys(path for element in written for path in self._wiring.heard.get(element, ()))
+        return [unit for unit in map(self._unit, touched) if unit.sample()]
 
-    def _add_presence(self) -> None:
-        """Let a PLC's presence touch all units of its area."""
-        areas: dict[str, list[ControlUnit]] = {}
-        for path, unit in self._units.items():
-            areas.setdefault(_area(path), []).append(unit)
-        for area, units in areas.items():
-            self._by_element[self._image.layout.groups[f"{area}/head"].ids["plc_present_w"]] = tuple(units)
+    def _unit(self, path: str) -> ControlUnit:
+        unit = self._units.get(path)
+        if unit is None:
+            default = self._defaults.get(path.rpartition("/")[2], self._wiring.zeros[path])
+            unit = self._units[path] = ControlUnit(self._image, path, default)
+        return unit
+
+
+@dataclass(frozen=True, slots=True)
+class _Wiring:
+    """The units of a layout, each with FALSE or 0 by its type, and its `enable_w`; which units hear an element."""
+
+    zeros: Mapping[str, Value]
+    enables: Mapping[str, int]
+    heard: Mapping[int, Sequence[str]]
+
+
+@lru_cache(maxsize=64)
+def _wiring(layout: Layout) -> _Wiring:
+    zeros: dict[str, Value] = {}
+    heard: dict[int, Sequence[str]] = {}
+    areas: dict[str, list[str]] = {}
+    for path, group in layout.groups.items():
+        ids = group.ids
+        if "enable_w" not in ids or "command_w" not in ids:
+            continue
+        zeros[path] = False if layout.elements[ids["command_w"]].type == "BOOL" else 0
+        heard |= dict.fromkeys(ids.values(), (path,))
+        areas.setdefault(_area(path), []).append(path)
+    for area, paths in areas.items():
+        heard[layout.groups[f"{area}/head"].ids["plc_present_w"]] = paths
+    return _Wiring(zeros, {path: layout.groups[path].ids["enable_w"] for path in zeros}, heard)
 
 
 def _area(path: str) -> str:

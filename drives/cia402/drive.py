@@ -292,16 +292,16 @@ class Drive:
     def _hook_reads(self, cells: Cells) -> None:
         """Let the objects of the machine's numbers answer from the row."""
         values = self.device.values
-        values.on_reads(_CELLS, lambda address: partial(cells(*_CELLS[address]).__getitem__, 0))
-        words: dict[ObjectAddress, Callable[[], Value]] = {
+        values.on_read_made(_CELLS, lambda address: partial(cells(*_CELLS[address]).__getitem__, 0))
+        computed: dict[ObjectAddress, Callable[[], Value]] = {
             objects.STATUSWORD: lambda: self.statusword,
             objects.CONTROLWORD: lambda: self._word,
             objects.PROBE_FUNCTION: self._read_probe_function,
             objects.MODE_DISPLAY: lambda: self._option(objects.MODE),
             objects.RATED_TORQUE: lambda: round(float(self._row["rated_torque"]) * 1000.0),
         }
-        for address, word in words.items():
-            values.on_read(*address, word)
+        for address, source in computed.items():
+            values.on_read(*address, source)
 
     def _hook_writes(self) -> None:
         """Let writes from the bus reach the row and the state machine."""

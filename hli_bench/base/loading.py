@@ -5,7 +5,6 @@ import importlib.util
 import json
 import shlex
 import sys
-import time
 from functools import lru_cache
 from pathlib import Path
 from types import CodeType, ModuleType
@@ -30,28 +29,6 @@ def data_file(folder: str, name: str) -> Path:
         if place.exists():
             return place
     raise InputError(f"no {name!r} in {folder}/")
-
-
-_texts: dict[Path, tuple[tuple[int, int, int], str]] = {}
-"""Texts by file, with the signature under which each was read."""
-_FRESH_NS = 2_000_000_000
-"""A file may change twice within a tick of its file system's clock; its signature is trusted when it is older."""
-
-
-def text_of(path: Path) -> str:
-    """Return the text of a UTF-8 file; the same object as last time while the file is the same.
-
-    Raises OSError or UnicodeDecodeError.
-    """
-    seen = path.stat()
-    signature = (seen.st_ctime_ns, seen.st_size, seen.st_ino)
-    kept = _texts.get(path)
-    if kept is not None and kept[0] == signature:
-        return kept[1]
-    text = path.read_text(encoding="utf-8")
-    if time.time_ns() - seen.st_ctime_ns > _FRESH_NS:
-        _texts[path] = (signature, text)
-    return text
 
 
 def module(name: str) -> ModuleType:

@@ -13,14 +13,13 @@ from hli_bench.bench import build, state
 from hli_bench.bench.config import MachineConfig, PlcConfig
 from hli_bench.bench.faceless import nothing_to_probe
 from hli_bench.bench.folder import load
-from hli_bench.bench.plc_ports import LocalPlc
+from hli_bench.bench.plc_ports import LocalPlc, loaded
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.bench.standstill import Standstill
 from hli_bench.kernel.records import Emitted
 from hli_bench.laws import native
 from hli_bench.manual.lists import Severity
-from hli_bench.plc import Task
-from hli_bench.plc import load as load_script
+from hli_bench.plc import Task, period_of
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, Observer
 from hli_bench.shells.apart import apart
@@ -30,7 +29,6 @@ from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 
 if TYPE_CHECKING:
     from hli_bench.bench.door import HliDoor
-    from hli_bench.bench.remote import RemoteMachine
 
 START_UP_CYCLES: Final = 2000
 """Cycles within which all drives must have come into operation."""
@@ -48,9 +46,9 @@ class Bench:
     """A bench of its own: kernel, drives, plant, terminals and PLC tasks in this process, in virtual time.
 
     `settings` are dotted keys of the machine folder, as with `--set`. `plc` replaces the machine's PLC
-    scripts; an empty list leaves it without any. `on_note` gets a line for people when the machine folder has a
-    warning, when the operating system has been asked for `realtime`, and when a PLC holds a program for long. Use
-    it as a context manager.
+    scripts; an empty list leaves it without any. `on_note` gets lines for people: warnings about the machine folder,
+    settings without effect, that the laws are compiled, what the operating system gave for `realtime`, PLCs that hold a
+    program for long, do not answer, or are refused. Use it as a context manager.
     Raises InputError for a bad machine folder or setting, NotEmulated for what is not built.
     """
 
@@ -82,14 +80,14 @@ class Bench:
         for key in settings or {} if plc else ():
             if key.startswith(("plc.", "plc[")):
                 on_note(
-                    f"warning: {key} has no effect: other scripts replace the machine's; set plc.0.script"
+                    f"warning: {key} has no effect: the scripts given as plc replace the machine's tasks; "
+                    "leave them out and set plc.0.script"
                 )
         self._on_note = on_note
         native.prepare(lambda: on_note(native.COMPILING), apart)
         with ExitStack() as stack:
             self._closing = stack
             self._realtime = realtime
-            self._remote: RemoteMachine | None = None
             self.kernel = build.kernel(self.config)
             self.engine = self._engine(machine, settings or {}, can, processes=processes)
             self.engine.observers += observers
@@ -98,10 +96,12 @@ class Bench:
             self._endpoint = zenoh
             self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
             self._garbage = Garbage()
-            self._pace = RealPace(self.config.cycle_ns, idle=self._idle) if pace == "real" else None
+            self._pace = RealPace(self.config.cycle_ns, idle=self._garbage.idle) if pace == "real" else None
             self._standstill = Standstill(self.kernel, on_note)
             self._plcs = plc_configs(self.config, plc)
             self._up = False
+            self._lost: list[str] = []
+            """What there is to say of scripts that did not return, to be said in the next result."""
             self.interrupted: Result | None = None
             """What a program had done when it was interrupted."""
             # Built: from here on `close` ends what the stack holds.
@@ -151,6 +151,7 @@ class Bench:
         self._tap.collector = collector
         first = self.engine.cycle
         self._standstill.begin(first)
+        self._lost.clear()
         last = FOREVER if limit_s is None else first + round(limit_s * NS_PER_S / self.config.cycle_ns)
         if self._pace is not None:
             self._pace.resume()
@@ -206,6 +207,7 @@ class Bench:
             notes=(
                 *(f"motion was held: {element}" for element in holding),
                 *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
+                *self._lost,
                 *nothing_to_probe(self.config, variables, measured, collector.errors),
             ),
             lateness=self._pace.take_part() if self._pace else None,
@@ -282,14 +284,7 @@ class Bench:
             RemoteMachine(self.config, machine, settings, can, rows, realtime=self._realtime)
         )
         self.terminal_layouts = build.terminal_layouts(self.config)
-        self._remote = remote
         return RemoteEngine(self.kernel, remote)
-
-    def _idle(self, rest_ns: int) -> None:
-        """Use the time that a paced bench has left before its next cycle."""
-        self._garbage.idle(rest_ns)
-        if self._remote is not None:
-            self._remote.look()
 
     def _keep_calm(self) -> None:
         """Ask Python and the operating system not to hold a cycle, until the bench is closed."""
@@ -311,15 +306,20 @@ class Bench:
         )
         return self._tap.door
 
+    def _lost_plc(self, note: str) -> None:
+        """Tell at once, and in the result, that a script has not returned."""
+        self._lost.append(note)
+        self._on_note(note)
+
     def _attach_plcs(self) -> None:
         for plc in self._plcs:
             if plc.process:
                 self._start_plc_process(plc)
                 continue
-            script = load_script(plc.script)
-            period_us = plc.period_us or script.period_us
+            script = loaded(plc.script)
+            period_us = plc.period_us or period_of(script, plc.script)
             task = Task(plc.name, script, period_us, self.kernel.image.layout, self.terminal_layouts)
-            self.engine.attach(LocalPlc(task, self.config.cycle_ns, self._on_note))
+            self.engine.attach(LocalPlc(task, self.config.cycle_ns, self._lost_plc))
 
     def _start_plc_process(self, plc: PlcConfig) -> None:
         """Start a script as a process of its own and wait until it has attached."""
@@ -327,7 +327,12 @@ class Bench:
             self._endpoint = free_endpoint()
             self._door = self._open_door(self._endpoint, lockstep=self._pace is None)
         assert self._endpoint is not None
-        process = self._closing.enter_context(PlcProcess(plc.script, self._endpoint, plc.name, plc.period_us))
+        door = self._door
+        process = self._closing.enter_context(
+            PlcProcess(
+                plc.script, self._endpoint, plc.name, plc.period_us, ends=lambda: not door.alive(plc.name)
+            )
+        )
         deadline = Deadline(ATTACH_S)
         while not deadline.over:
             if self._door.attached(plc.name):

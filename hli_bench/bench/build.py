@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from hli_bench.base.errors import InputError
 from hli_bench.base.loading import module
 from hli_bench.bench.config import MachineConfig
 from hli_bench.kernel.cycle import Kernel
@@ -40,6 +41,8 @@ def machine_side(config: MachineConfig, axis_rows: Rows) -> MachineSide:
     # Any: a drive model is a module of the user's choice
     for axis in config.axes:
         model: Any = module(axis.drive)
+        if not hasattr(model, "create"):
+            raise InputError(f"axis.{axis.name}.drive: {axis.drive!r} is no drive model, it has no create()")
         drives.append(model.create(axis.name, axis.node_id, built.rows.servo[axis.index], {}))
     return MachineSide(
         rows=built.rows,

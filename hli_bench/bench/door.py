@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from hli_bench.base.errors import InputError, NotEmulated
 from hli_bench.base.time import Ns
-from hli_bench.bench.plc_ports import ANSWER_S, SILENCE_S, AttachedPlc, period_cycles
+from hli_bench.bench.plc_ports import AttachedPlc, period_cycles
 from hli_bench.bench.result import error_of
 from hli_bench.kernel.records import CncError, Emitted
 from hli_bench.protocols.hli.access import Refusal
@@ -58,7 +58,7 @@ class HliDoor:
     @property
     def watched(self) -> bool:
         """Somebody listens to the image and no attached PLC sets the pace: it is put every cycle."""
-        return not self._server.attached and self._server.has_image_subscribers()
+        return not self._server.attached and self._server.image_wanted
 
     @property
     def waiting(self) -> bool:
@@ -68,6 +68,10 @@ class HliDoor:
     def attached(self, name: str) -> bool:
         """Tell whether a PLC of that name takes part from another process."""
         return name in self._server.attached
+
+    def alive(self, name: str) -> bool:
+        """Tell whether a PLC of that name has a session, attached or not."""
+        return self._server.alive(name)
 
     def after_step(self) -> None:
         """Publish the cycle, do what was asked, let go of PLCs that have departed."""
@@ -155,7 +159,8 @@ class HliDoor:
             request.reply(self._remark(request))
         ready = self._engine.kernel.ready
         while self._resets and cycle > self._resets[0][0] + (0 if ready else RESET_CYCLES):
-            self._resets.pop(0)[1].reply()
+            out = "" if ready else f"still out of operation: {', '.join(self._engine.kernel.out())}"
+            self._resets.pop(0)[1].reply(json.dumps({"note": out}) if out else "")
             self.state_changed()
 
     def _remark(self, request: WriteRequest) -> str:
@@ -182,18 +187,19 @@ class HliDoor:
             engine.attach(port)
 
     def _let_go(self) -> None:
-        for plc in self._server.departed():
-            self._engine.lose(plc)
+        for name in self._server.departed():
+            if self._engine.kernel.channel.running:
+                self._on_note(f"PLC {name} has gone in a program: its session has ended, or was silent")
+            self._engine.lose(name)
             self._settle_until = self._engine.cycle + 1
         while self._engine.lost:
-            name = self._engine.lost.pop()
-            if self.attached(name):
-                patience_s = ANSWER_S if self._lockstep else SILENCE_S
+            plc = self._engine.lost.pop()
+            if isinstance(plc, AttachedPlc) and self.attached(plc.name):
                 self._on_note(
-                    f"PLC {name} is alive and has not answered for {patience_s:g} s, up to cycle {self._engine.cycle}: "
-                    "it takes part no more until it attaches anew"
+                    f"PLC {plc.name} is alive and has not answered for {plc.patience_s:g} s, up to cycle "
+                    f"{self._engine.cycle}: it takes part no more until it attaches anew"
                 )
-            self._server.detach(name)
+            self._server.detach(plc.name)
 
 
 def result_reply(run: Callable[[], Any], request: RunProgram) -> None:

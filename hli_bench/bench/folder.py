@@ -10,18 +10,19 @@ from typing import Any, Final, TypeVar, cast
 
 from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.base.ids import AxisIndex, AxisNumber, NodeId
-from hli_bench.base.loading import data_file, text_of
+from hli_bench.base.loading import data_file
 from hli_bench.base.time import NS_PER_MS, Ns, dc_ns
 from hli_bench.bench.config import AxisConfig, FaultConfig, MachineConfig, PlcConfig
 from hli_bench.bench.parameters import built, listed
 from hli_bench.bench.schema import BITS, KEYS, Key, Plain, pattern
-from hli_bench.bench.sources import SET, Given, override, read_toml, toml_text
+from hli_bench.bench.sources import Given, override, toml_text, toml_values
 from hli_bench.manual.axis import AxisParams
 from hli_bench.manual.channel import ChannelParams
 from hli_bench.manual.lists import Finding, Severity, converted
 from hli_bench.manual.sheet import Value
 from hli_bench.plant.build import signal_names
 from hli_bench.plant.settings import PROBE, AxisPlant, Cam, Face, PlantAxis, PlantSettings, Probe, Stop
+from hli_bench.shells.texts import text_of
 from hli_bench.terminals.settings import TerminalSettings
 from hli_bench.terminals.terminal import type_of
 
@@ -52,21 +53,23 @@ def load(machine: str | Path, overrides: Mapping[str, object] | None = None) -> 
     folder = machine_folder(machine)
     file = folder / MACHINE_FILE
     text = toml_text(file)
-    given = read_toml(text, str(file))
-    loader = _Loader(folder, override(given, overrides or {}))
-    plain = _plain(folder, text, tuple(_list_text(path) for path in _list_files(folder, text)))
-    if plain is not None and given.keys() <= loader.given.keys():
+    given = toml_values(text, str(file))
+    texts = tuple(map(_list_text, _list_files(folder, text)))
+    loader = _Loader(folder, given, override(given, overrides or {}))
+    plain = _plain(folder, text, texts)
+    if plain is not None:
         loader.begin_with(plain)
     return loader.load()
 
 
 @lru_cache(maxsize=16)
-def _plain(folder: Path, text: str, lists: tuple[str, ...]) -> "_Loader | None":
+def _plain(folder: Path, text: str, texts: tuple[str | None, ...]) -> "_Loader | None":
     """Return the loader of a folder without overrides, once a process for the same texts of its files.
 
     None when anything is to be said of it: then each load has to find it anew.
     """
-    loader = _Loader(folder, read_toml(text, str(folder / MACHINE_FILE)))
+    given = toml_values(text, str(folder / MACHINE_FILE))
+    loader = _Loader(folder, given, given, dict(zip(_list_files(folder, text), texts, strict=True)))
     try:
         loader.load()
     except BenchError:
@@ -77,16 +80,16 @@ def _plain(folder: Path, text: str, lists: tuple[str, ...]) -> "_Loader | None":
 @lru_cache(maxsize=16)
 def _list_files(folder: Path, text: str) -> tuple[Path, ...]:
     """Return the list files that a machine.toml names."""
-    given = read_toml(text, str(folder / MACHINE_FILE))
+    given = toml_values(text, str(folder / MACHINE_FILE))
     return tuple(folder / str(one.value) for path, one in given.items() if path.endswith(".list"))
 
 
-def _list_text(path: Path) -> str:
-    """Return the text of a list file, of one that cannot be read an empty one."""
+def _list_text(path: Path) -> str | None:
+    """Return the text of a list file, None when it cannot be read."""
     try:
         return text_of(path)
     except (OSError, UnicodeDecodeError):
-        return ""
+        return None
 
 
 @dataclass(slots=True)
@@ -97,10 +100,17 @@ class _Loader:
     """
 
     folder: Path
+    file: Mapping[str, Given]
+    """What machine.toml gives."""
     given: Mapping[str, Given]
+    """The same with overrides on top."""
+    texts: Mapping[Path, str | None] = field(default_factory=dict)
+    """Texts of list files that have been read already."""
     base: MachineConfig | None = None
     changed: Sequence[str] = ()
     """Paths whose values differ from those of `base`."""
+    accepted: Mapping[str, Plain] = field(default_factory=dict)
+    """Values of the other paths, which have been checked."""
     machine: MachineConfig | None = None
     errors: list[InputError] = field(default_factory=list)
     notes: list[Finding] = field(default_factory=list)
@@ -112,10 +122,12 @@ class _Loader:
 
     def begin_with(self, plain: "_Loader") -> None:
         """Take over what the loader of the same folder without overrides has found."""
+        self.texts = plain.texts
         self.base = plain.machine
-        self.changed = [path for path, given in self.given.items() if plain.given.get(path) is not given]
-        self.values = dict(plain.values)
-        self.lists = {owner: dict(given) for owner, given in plain.lists.items()}
+        differ = [path for path, given in self.given.items() if plain.given.get(path) is not given]
+        self.changed = [*differ, *(path for path in plain.given if path not in self.given)]
+        gone = set(self.changed)
+        self.accepted = {path: value for path, value in plain.values.items() if path not in gone}
 
     def load(self) -> MachineConfig:
         """Return the machine. Raises InputError for everything that is wrong, NotEmulated."""
@@ -130,7 +142,7 @@ class _Loader:
             raise NotEmulated("; ".join(not_built))
         return self.machine
 
-    def _same(self, *below: str) -> MachineConfig | None:
+    def _untouched(self, *below: str) -> MachineConfig | None:
         """Return the base if none of the values below these paths differs from it."""
         return None if any(path.startswith(below) for path in self.changed) else self.base
 
@@ -138,9 +150,12 @@ class _Loader:
         """Return the machine, or None when something is wrong."""
         base = self.base
         names = self._axis_names() if base is None else [axis.name for axis in base.axes]
-        for path in self.given if base is None else self.changed:
-            self._take(path, self.given[path], names)
-        kept = self._same("channel.")
+        for path, given in self.given.items():
+            if path in self.accepted:
+                self.values[path] = self.accepted[path]
+            else:
+                self._take(path, given, names)
+        kept = self._untouched("channel.")
         channel = kept.channel if kept else self._tree(ChannelParams, "channel")
         params = [self._params(number, name) for number, name in enumerate(names)]
         if self.errors:
@@ -148,7 +163,7 @@ class _Loader:
         axes = tuple(self._axis(number, name, params[number]) for number, name in enumerate(names))
         plant = self._plant(axes)
         config = MachineConfig(
-            name=base.name if base else self.folder.resolve().name,
+            name=self.folder.resolve().name,
             folder=self.folder,
             cycle_us=self._value("cycle_us"),
             dc_epoch_ns=dc_ns(self._value("dc_epoch")),
@@ -156,14 +171,16 @@ class _Loader:
             channel=channel,
             axes=axes,
             plant=plant,
-            terminals=kept.terminals if (kept := self._same("terminal.", "cycle_us")) else self._terminals(),
-            plcs=kept.plcs if (kept := self._same("plc[", "cycle_us")) else self._plcs(),
-            faults=kept.faults if (kept := self._same("fault[")) else self._faults(),
+            terminals=kept.terminals
+            if (kept := self._untouched("terminal.", "cycle_us"))
+            else self._terminals(),
+            plcs=self._plcs(),
+            faults=kept.faults if (kept := self._untouched("fault[")) else self._faults(),
             notes=tuple(self.notes),
         )
-        if not self._same("axis.", "plant.axis."):
+        if not self._untouched("axis.", "plant.axis."):
             self._check_axes(axes, plant)
-        if not self._same("axis.", "terminal.", "fault["):
+        if not self._untouched("axis.", "terminal.", "fault["):
             self._check_signals(names)
         return config
 
@@ -179,8 +196,8 @@ class _Loader:
     def _axis_names(self) -> list[str]:
         """Return the axes in the order of the file; an override cannot add one."""
         names: dict[str, None] = {}
-        for path, given in self.given.items():
-            if path.startswith("axis.") and path.count(".") >= 2 and given.file != SET:
+        for path in self.file:
+            if path.startswith("axis.") and path.count(".") >= 2:
                 names[path.split(".")[1]] = None
         if not names:
             raise InputError("no axis: expected a table [axis.<NAME>]", file=str(self.folder / MACHINE_FILE))
@@ -240,11 +257,12 @@ class _Loader:
 
     def _tree(self, cls: type[P], owner: str) -> P:
         """Return the parameters of the channel or an axis: list file, then machine.toml, then overrides."""
-        values: dict[str, Value] = {}
-        places: dict[str, Given] = {}
         name = self._value(f"{owner}.list")
-        if name:
-            values, places = self._list_file(cls, owner, name)
+        text = self._list_file(owner, name) if name else ""
+        found = listed(cast("Any", cls), text, str(self.folder / name))
+        for finding in found.findings:
+            self._found(finding.as_error(), finding.severity)
+        places = dict(found.places)
         changes: dict[str, Value] = {}
         for path, given in self.lists.get(owner, {}).items():
             try:
@@ -254,25 +272,20 @@ class _Loader:
                 continue
             changes.update(taken)
             places.update(dict.fromkeys(taken, given))
-        tree = built(cast("Any", cls), tuple((values | changes).items()), repr(changes))
+        tree = built(cast("Any", cls), tuple((found.values | changes).items()), text, repr(changes))
         for path, finding in tree.findings:
             self._found(places[path].error(finding.message), finding.severity)
         self.refused += [f"{owner}: {text}" for text in tree.refused]
         return cast("P", tree.params)
 
-    def _list_file(self, cls: type[Any], owner: str, name: str) -> tuple[dict[str, Value], dict[str, Given]]:
-        """Return the values of a list file with their places."""
+    def _list_file(self, owner: str, name: str) -> str:
+        """Return the text of a list file, of one that cannot be read an empty one."""
         path = self.folder / name
-        try:
-            text = text_of(path)
-        except (OSError, UnicodeDecodeError):
+        text = self.texts[path] if path in self.texts else _list_text(path)
+        if text is None:
             given = self.given.get(f"{owner}.list")
             self._fail(given, f"{owner}.list: {name!r} is not a readable file of {self.folder}")
-            return {}, {}
-        found = listed(cast("Any", cls), text, str(path))
-        for finding in found.findings:
-            self._found(finding.as_error(), finding.severity)
-        return dict(found.values), dict(found.places)
+        return text or ""
 
     def _found(self, error: InputError, severity: Severity) -> None:
         """Keep a remark about a list: an error stops, the rest is noted."""
@@ -284,11 +297,11 @@ class _Loader:
     # -- axes and plant -----------------------------------------------------------------------------------
 
     def _params(self, index: int, name: str) -> AxisParams:
-        kept = self._same(f"axis.{name}.")
+        kept = self._untouched(f"axis.{name}.")
         return kept.axes[index].params if kept else self._tree(AxisParams, f"axis.{name}")
 
     def _axis(self, index: int, name: str, params: AxisParams) -> AxisConfig:
-        kept = self._same(f"axis.{name}.")
+        kept = self._untouched(f"axis.{name}.")
         if kept:
             return kept.axes[index]
         node = self._value(f"axis.{name}.node_id")
@@ -322,7 +335,7 @@ class _Loader:
         return self.lists.get(f"axis.{axis}", {}).get(path) or self.given.get(f"axis.{axis}.{path}")
 
     def _plant(self, axes: Sequence[AxisConfig]) -> PlantSettings:
-        kept = self._same("plant.probe.")
+        kept = self._untouched("plant.probe.")
         probe = kept.plant.probe if kept else self._probe()
         plant = tuple(self._plant_axis(axis) for axis in axes)
         return PlantSettings(axes=plant, probe=probe, seed=self._value("seed"))
@@ -332,7 +345,7 @@ class _Loader:
 
     def _plant_axis(self, axis: AxisConfig) -> PlantAxis:
         name = axis.name
-        kept = self._same(
+        kept = self._untouched(
             f"axis.{name}.", *(f"plant.{part}.{name}." for part in ("probe", "stop", "cam", "axis"))
         )
         if kept:

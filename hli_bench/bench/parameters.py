@@ -18,10 +18,10 @@ class Tree(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def built(cls: Any, values: tuple[tuple[str, Value], ...], exact: str) -> Tree:
+def built(cls: Any, values: tuple[tuple[str, Value], ...], *exact: str) -> Tree:
     """Build and check parameters, once a process for the same values: benches of a sweep differ in few of them.
 
-    `exact` is what tells values apart that are equal and not the same (0.0 and -0.0).
+    `exact` are the texts they come from: they tell values apart that are equal and not the same (0.0 and -0.0).
     """
     params = build(cls, dict(values))
     return Tree(params, check_values(cls, dict(values)), refusals(params))
@@ -30,7 +30,7 @@ def built(cls: Any, values: tuple[tuple[str, Value], ...], exact: str) -> Tree:
 class Listed(NamedTuple):
     """A list file: its values with their places, and findings beside those that checks of values repeat."""
 
-    values: Mapping[str, Value]
+    values: dict[str, Value]
     places: Mapping[str, Given]
     findings: Sequence[Finding]
 
@@ -42,4 +42,4 @@ def listed(cls: Any, text: str, file: str) -> Listed:
     about_values = {finding.message for _, finding in check_values(cls, parsed.values)}
     places = {key: Given(value, file, parsed.lines[key]) for key, value in parsed.values.items()}
     findings = [finding for finding in parsed.findings if finding.message not in about_values]
-    return Listed(parsed.values, places, findings)
+    return Listed(dict(parsed.values), places, findings)

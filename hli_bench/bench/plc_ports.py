@@ -1,18 +1,20 @@
 """PLC tasks as the engine sees them: in this process, or attached over Zenoh."""
 
 from collections.abc import Callable, Mapping
-from typing import Final, Protocol
+from pathlib import Path
+from typing import Any, Final, Protocol
 
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import NS_PER_S, Ns
-from hli_bench.plc import Task
+from hli_bench.plc import Task, load
+from hli_bench.plc.script import line_of
 from hli_bench.shells.watchdog import WATCHDOG, Overdue
 from hli_bench.wire.hli import Commands
 
 ANSWER_S: Final = 10.0
 """Time by the clock in which a PLC for which the kernel waits must be done with a cycle (decided here)."""
 SILENCE_S: Final = 1.0
-"""Machine time for which a PLC for which it does not wait may say nothing (decided here)."""
+"""Machine time, beyond its period, for which a PLC for which it does not wait may say nothing (decided here)."""
 
 
 def period_cycles(name: str, period_us: int, cycle_ns: int) -> int:
@@ -23,6 +25,15 @@ def period_cycles(name: str, period_us: int, cycle_ns: int) -> int:
             f"plc {name}: period_us = {period_us}, allowed are multiples of cycle_us = {cycle_us}"
         )
     return period_us // cycle_us
+
+
+def loaded(path: Path) -> Any:
+    """Return the script at `path`. Raises InputError when it cannot be loaded, or is not within the time of a cycle."""
+    try:
+        return WATCHDOG.limited(ANSWER_S, load, path)
+    except Overdue as overdue:
+        message = f"the script has not been loaded within {ANSWER_S:g} s"
+        raise InputError(message, str(path), line_of(overdue, path)) from overdue
 
 
 class LocalPlc:
@@ -41,10 +52,9 @@ class LocalPlc:
         try:
             return WATCHDOG.limited(ANSWER_S, self._task.step, cycle, dc_ns, image, io)
         except Overdue as overdue:
-            place = self._task.place(overdue)
             self._on_note(
-                f"PLC {self.name} has not returned from cycle {cycle} for {ANSWER_S:g} s ({place}): "
-                "it takes part no more"
+                f"PLC {self.name} has not returned from cycle {cycle} within {ANSWER_S:g} s "
+                f"({self._task.place(overdue)}): it takes part no more"
             )
             return None
 
@@ -62,11 +72,20 @@ class Exchange(Protocol):
 class AttachedPlc:
     """A PLC in another process: its image has been published, its answer is awaited (lock-step) or taken as it comes.
 
-    `publish` puts the images of a cycle; every port may call it, it acts once a cycle. `patience_s` is the time in
-    which it must answer: by the clock in lock-step, of the machine else.
+    `publish` puts the images of a cycle; every port may call it, it acts once a cycle. `patience_s` is how long it may
+    be silent: by the clock in lock-step, else of the machine, at first as long as in lock-step.
     """
 
-    __slots__ = ("_exchange", "_heard", "_patience", "_publish", "name", "period_cycles")
+    __slots__ = (
+        "_cycle_ns",
+        "_exchange",
+        "_heard",
+        "_lockstep",
+        "_publish",
+        "name",
+        "patience_s",
+        "period_cycles",
+    )
 
     def __init__(
         self,
@@ -80,21 +99,26 @@ class AttachedPlc:
     ) -> None:
         self.name = name
         self.period_cycles = cycles
+        self.patience_s = ANSWER_S
         self._exchange = exchange
         self._publish = publish
-        self._patience = None if lockstep else cycles + round(SILENCE_S * NS_PER_S / cycle_ns)
-        """Cycles without an answer after which a PLC that is not awaited counts as gone."""
+        self._lockstep = lockstep
+        self._cycle_ns = cycle_ns
         self._heard: int | None = None
-        """Cycle in which it was heard last."""
+        """Cycle in which it was heard last, at first the one in which it was due."""
 
     def tick(self, cycle: int, dc_ns: Ns, image: bytearray, io: Mapping[str, bytes]) -> Commands | None:
         """Exchange images and commands; None when the PLC does not answer in time."""
         self._publish(cycle, dc_ns, io)
-        if self._patience is None:
-            return self._exchange.commands(self.name, cycle, ANSWER_S)
+        if self._lockstep:
+            return self._exchange.commands(self.name, cycle, self.patience_s)
         commands = self._exchange.latest_commands(self.name, cycle)
-        if commands is not None or self._heard is None:
+        if commands is not None:
+            self._heard, self.patience_s = cycle, SILENCE_S
+            return commands
+        if self._heard is None:
             self._heard = cycle
-        elif cycle - self._heard > self._patience:
-            return None
-        return commands or Commands(self.name, cycle, ())
+        silent = cycle - self._heard - self.period_cycles
+        return (
+            None if silent * self._cycle_ns > self.patience_s * NS_PER_S else Commands(self.name, cycle, ())
+        )

@@ -26,6 +26,8 @@ from hli_bench.wire.images import TerminalLayout
 from hli_bench.wire.signals import Edge
 
 REALTIME: Final = "realtime"
+UNASKED: Final = 100
+"""Cycles for which terminals that stay as they are are not asked; then they are, to see that their process lives."""
 _DRIVES: Final = "hli_bench.bench.drives_process"
 _TERMINALS: Final = "hli_bench.bench.terminals_process"
 
@@ -70,10 +72,11 @@ class RemoteEngine(Engine):
 
 
 class RemoteMachine:
-    """How the kernel's process reaches the others: one round trip to each in every cycle.
+    """How the kernel's process reaches the others: one round trip to the drives in every cycle.
 
-    The terminals' answer is taken when somebody looks at the images, at the latest in the next cycle. What is sent
-    ahead is answered while the kernel waits for its next cycle, and counts in that cycle.
+    What is sent ahead is answered while the kernel waits for its next cycle, and counts in that cycle. The terminals
+    are asked when there is an edge; their answer is taken when somebody looks at the images, at the latest before they
+    are asked again.
     """
 
     def __init__(
@@ -104,10 +107,10 @@ class RemoteMachine:
         self._images: dict[str, bytes] = {}
         self._asked: int | None = None
         """The cycle for which the terminals owe an answer."""
+        self._ask_again = 0
+        """Cycle from which on the terminals are to be asked also if there is no edge."""
         self.ahead: int | None = None
         """The cycle whose numbers have been sent ahead."""
-        self._early: bytes | None = None
-        """The drives' answer to them, if it has been taken already."""
         self._quiet = False
         self._numbers = Numbers(axis)
         self._due: list[CanFrame] = []
@@ -151,11 +154,10 @@ class RemoteMachine:
 
     def numbers(self, kind: Order, cycle: int) -> bool:
         """Pass the telegrams of a SYNC by numbers; False: a drive has a fault, frames have to pass."""
-        if self.ahead is not None:
-            self.look()
-            answer, self._early, self.ahead = self._early or b"", None, None
-        else:
-            answer = self._drives.ask(telegraph.order(kind, cycle, self._numbers.command()))
+        if self.ahead is None:
+            self._drives.tell(telegraph.order(kind, cycle, self._numbers.command()))
+        self.ahead = None
+        answer = self._drives.answer()
         state, numbers, _, due, edges = telegraph.read_reply(answer)
         if state == telegraph.FAULT:
             return False
@@ -167,15 +169,6 @@ class RemoteMachine:
         """Send the targets for the next SYNC."""
         self.ahead = cycle
         self._drives.tell(telegraph.order(Order.NUMBERS, cycle, self._numbers.command()))
-
-    def look(self) -> None:
-        """Use an idle gap: take the drives' answer to what was sent ahead, and let the terminals work on it."""
-        if self.ahead is None or self._early is not None:
-            return
-        self._early = self._drives.answer()
-        state, _, _, _, edges = telegraph.read_reply(self._early)
-        if state != telegraph.FAULT:
-            self._ask_terminals(self.ahead, edges)
 
     def timers(self, cycle: int) -> list[CanFrame]:
         """Return what the drives sent by time in this cycle."""
@@ -213,14 +206,14 @@ class RemoteMachine:
             self._due += telegraph.read_frames(due)
         if edges:
             self._edges += telegraph.read_edges(edges, self._signals)
-        if self._asked != cycle:
-            self._ask_terminals(cycle, edges)
+        self._tell_terminals(cycle, edges)
 
-    def _ask_terminals(self, cycle: int, edges: bytes) -> None:
+    def _tell_terminals(self, cycle: int, edges: bytes) -> None:
         """Tell the terminals the edges of a cycle; they work while the kernel does something else."""
         self._take_images()
-        self._asked = cycle
-        self._terminals.tell(telegraph.order(Order.CYCLE, cycle, edges))
+        if edges or cycle >= self._ask_again:
+            self._asked = cycle
+            self._terminals.tell(telegraph.order(Order.CYCLE, cycle, edges))
 
     def _from_bus(self, announced: Sequence[CanFrame]) -> list[CanFrame]:
         """Receive what the drives have announced; frames of other nodes on the bus are not for the CNC."""
@@ -241,8 +234,9 @@ class RemoteMachine:
         """Take the answer that the terminals owe."""
         if self._asked is None:
             return
-        self._asked = None
-        images = telegraph.read_parts(self._terminals.answer())
+        asked, self._asked = self._asked, None
+        settled, *images = telegraph.read_parts(self._terminals.answer())
+        self._ask_again = asked + UNASKED if settled == telegraph.SETTLED else 0
         self._images = {
             layout.name: image for layout, image in zip(self.terminal_layouts, images, strict=True)
         }

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 from hli_bench.base.errors import InputError
-from hli_bench.base.loading import text_of
 from hli_bench.manual.lists import flatten
+from hli_bench.shells.texts import text_of
 
 SET: Final = "--set"
 """Named as the file of a value that an override gave."""
@@ -48,14 +49,16 @@ def toml_text(path: Path) -> str:
 
 
 @lru_cache(maxsize=64)
-def read_toml(text: str, file: str) -> Mapping[str, Given]:
+def toml_values(text: str, file: str) -> Mapping[str, Given]:
     """Return the values of a TOML text by dotted path, once a process for the same text.
 
     Raises InputError with file and line.
     """
     lines = line_numbers(text)
     tree = toml_tree(text, file)
-    return {key: Given(value, file, line_of(lines, key)) for key, value in flatten(tree).items()}
+    return MappingProxyType(
+        {key: Given(value, file, line_of(lines, key)) for key, value in flatten(tree).items()}
+    )
 
 
 def toml_tree(text: str, file: str) -> dict[str, object]:

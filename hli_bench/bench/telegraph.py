@@ -31,6 +31,7 @@ class Span:
             {"names": ["span"], "formats": [f"V{end - begin}"], "offsets": [begin], "itemsize": size}
         )
         self._span: Rows = rows.view(span)["span"]
+        self._dtype = self._span.dtype
 
     def read(self) -> bytes:
         """Return what stands in the rows."""
@@ -38,7 +39,7 @@ class Span:
 
     def write(self, data: bytes) -> None:
         """Put it into the rows."""
-        self._span[...] = np.frombuffer(data, self._span.dtype)
+        self._span[...] = np.frombuffer(data, self._dtype)
 
 
 class Numbers:
@@ -49,26 +50,13 @@ class Numbers:
 
     def __init__(self, axis: Rows) -> None:
         self._command = Span(axis, "target", "probe_function")
-        self._received = Span(axis, "received", "received")
-        self._actual = Span(axis, "statusword", "following_error")
-        self._split = len(self._received.read())
-
-    def command(self) -> bytes:
-        """Pack targets, control words, latch control words."""
-        return self._command.read()
-
-    def take_command(self, data: bytes) -> None:
-        """Unpack them."""
-        self._command.write(data)
-
-    def actual(self) -> bytes:
-        """Pack positions, status words, latches and what else the drives say at each SYNC."""
-        return self._received.read() + self._actual.read()
-
-    def take_actual(self, data: bytes) -> None:
-        """Unpack them."""
-        self._received.write(data[: self._split])
-        self._actual.write(data[self._split :])
+        self._actual = Span(axis, "statusword", "received")
+        self.command = self._command.read
+        """Packs targets, control words, latch control words."""
+        self.take_command = self._command.write
+        self.actual = self._actual.read
+        """Packs status words, latches, positions and what else the drives say at each SYNC."""
+        self.take_actual = self._actual.write
 
 
 class Order(IntEnum):
@@ -89,6 +77,12 @@ QUIET: Final = 1
 """The next cycle needs no frames from their side."""
 FAULT: Final = 2
 """A drive has an error: this SYNC needs frames. The machine has moved, nothing else has happened yet."""
+
+
+SETTLED: Final = b"\1"
+"""The terminals say: the images stay as they are while no edge comes."""
+CHANGING: Final = b"\0"
+"""They may change without one."""
 
 
 def order(kind: Order, cycle: int, body: bytes = b"") -> bytes:

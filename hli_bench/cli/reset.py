@@ -1,6 +1,7 @@
 """`hli-bench reset`: CNC reset of a bench that is up."""
 
 import argparse
+import sys
 
 from hli_bench.cli.options import Commands, add_connect
 
@@ -11,7 +12,7 @@ def add(commands: Commands) -> None:
         "reset",
         help="CNC reset of a bench that is up",
         description="Aborts the running program, clears errors of the CNC and brings drives that dropped out back into "
-        "operation; returns when that is done.",
+        "operation; returns when that is done. Exit status 1: drives are still out.",
     )
     add_connect(parser)
     parser.set_defaults(execute=execute)
@@ -22,5 +23,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from hli_bench.shells.zenoh_client import HliClient
 
     with HliClient(arguments.connect, arguments.machine) as client:
-        client.reset()
-    return 0
+        note = client.reset()
+    if note:
+        print(note, file=sys.stderr)
+    return 1 if note else 0

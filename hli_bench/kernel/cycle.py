@@ -66,6 +66,10 @@ class Kernel:
         """All drives are in operation."""
         return bool(self._starting) and all(sequence.ended for sequence in self._starting.values())
 
+    def out(self) -> list[str]:
+        """Return the names of the axes whose drives are not in operation."""
+        return [axis.name for axis in self.setup.axes if not self._starting[axis.index].ended]
+
     @property
     def telegram_ids(self) -> frozenset[int]:
         """COB-IDs of the telegrams that every cycle brings."""

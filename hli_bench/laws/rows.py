@@ -62,8 +62,7 @@ AXIS: Final = np.dtype(
         ("command", "f8"),  # set point, ACS, 0.1 um
         ("velocity", "f8"),  # of the set point, 0.1 um/s
         ("past", "f8"),  # set point of the cycle before: where a drive without lag stands at the next SYNC
-        ("received", "i4"),  # actual position in the newest telegram, increments
-        ("feedback", "i8"),  # the same, unwrapped
+        ("feedback", "i8"),  # `received`, unwrapped
         ("increments_per_unit", "f8"),  # increments per 0.1 um, negative when the drive counts the other way
         ("reference", "i8"),  # increments at ACS position 0
         ("actual", "f8"),  # ACS, 0.1 um
@@ -81,6 +80,7 @@ AXIS: Final = np.dtype(
         ("digital_inputs", "u4"),
         ("torque_permille", "i2"),
         ("following_error", "i4"),
+        ("received", "i4"),  # actual position in the newest telegram, increments
     ],
     align=True,
 )

@@ -36,7 +36,7 @@ def load(path: Path) -> Any:
         raise
     except SyntaxError as error:
         raise InputError(f"syntax: {error.msg}", str(path), error.lineno or 0, error.offset or 0) from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise script_error(error, path) from error
     found = {
         name: value
@@ -53,11 +53,21 @@ def load(path: Path) -> Any:
         )
     try:
         return chosen()
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise script_error(error, path) from error
 
 
-def script_error(error: Exception, path: Path) -> InputError:
+def period_of(script: Any, path: Path) -> int:
+    """Return the period that a script has, us. Raises InputError when it has none that could be one."""
+    period_us = getattr(script, "period_us", None)
+    if isinstance(period_us, bool) or not isinstance(period_us, int):
+        given = "is missing" if period_us is None else f"= {period_us!r}"
+        message = f"{type(script).__name__}.period_us {given}: expected a whole number of microseconds"
+        raise InputError(message, str(path))
+    return period_us
+
+
+def script_error(error: BaseException, path: Path) -> InputError:
     """Return `error` as the error of the script at `path`, with the line of the script that it came from."""
     return InputError(f"{type(error).__name__}: {error}", str(path), line_of(error, path))
 

@@ -49,8 +49,9 @@ class Task:
         self._paths = [element.path for element in layout.elements]
 
     def place(self, error: BaseException) -> str:
-        """Return file and line of the script at which an error left it."""
-        return f"{self._file}:{line_of(error, self._file)}"
+        """Return file and line of the script at which an error left it, the file alone when it had left it before."""
+        line = line_of(error, self._file)
+        return f"{self._file}:{line}" if line else str(self._file)
 
     def step(self, cycle: int, dc_ns: Ns, image: bytes | bytearray, io: Mapping[str, bytes]) -> Commands:
         """Run the script once on the HLI after kernel cycle `cycle` and the terminals' images by name.
@@ -68,7 +69,7 @@ class Task:
                 self._start(self._hli, self._io)
                 self._start = None
             self._cycle(self._hli, self._io)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise script_error(error, self._file) from error
         if not frame.changes:
             return Commands(self.name, cycle, ())

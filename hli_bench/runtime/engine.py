@@ -106,7 +106,7 @@ class Engine:
         self.plcs: list[PlcPort] = []
         self.observers: list[Observer] = []
         self.listeners: list[Listener] = []
-        self.lost: list[str] = []
+        self.lost: list[PlcPort] = []
         self._orders: list[CanFrame] = []
         self._decide = True
         self._cycle_ns = kernel.setup.cycle_ns
@@ -317,11 +317,12 @@ class Engine:
 
     def lose(self, name: str) -> None:
         """A PLC has gone: its units fall back, the CNC reacts as to a PLC stop."""
-        if not any(plc.name == name for plc in self.plcs):
+        lost = [plc for plc in self.plcs if plc.name == name]
+        if not lost:
             return
         self.plcs = [plc for plc in self.plcs if plc.name != name]
         self._tick = self._next_tick()
-        self.lost.append(name)
+        self.lost += lost
         self.access.leave(name)
         self.kernel.plc_lost(name)
         self._decide = True

@@ -16,7 +16,7 @@ import zenoh
 from hli_bench.base import garbage
 from hli_bench.base.errors import BenchError
 from hli_bench.base.loading import child_command
-from hli_bench.plc import Task, load
+from hli_bench.plc import Task, load, period_of
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
 from hli_bench.shells.zenoh_client import HliClient
 from hli_bench.shells.zenoh_session import PLC_LEASE_MS, on_network_thread, payload
@@ -115,7 +115,7 @@ class ScriptClient:
         """Take part with a fresh task until the bench lets go of it (True) or ends (False)."""
         client = self._client
         script = load(self._script)
-        period_us = script.period_us if self._period_us is None else self._period_us
+        period_us = self._period_us or period_of(script, self._script)
         task = Task(self._name, script, period_us, client.layout, client.terminals)
         for terminal in client.terminals:
             self._io[terminal.name] = client.ask_packed(f"io/{terminal.name}")

@@ -60,15 +60,27 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
 class PlcProcess:
     """A PLC script running as a process of its own, attached to the bench over Zenoh."""
 
-    def __init__(self, script: Path, endpoint: str, name: str, period_us: int | None = None) -> None:
-        """Start it; `period_us` None: the script's own."""
+    def __init__(
+        self,
+        script: Path,
+        endpoint: str,
+        name: str,
+        period_us: int | None = None,
+        ends: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """Start it; `period_us` None: the script's own. `ends` tells whether it is about to end by itself."""
         self._process = plc_process.start(script, endpoint, name, period_us)
         self._script = script
+        self._ends = ends
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
+        """End it; one that ends by itself may say why."""
+        if self._ends():
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(END_S)
         _end(self._process)
 
     def check(self) -> None:

@@ -16,6 +16,8 @@ ANSWER_S: Final = 5.0
 """How long the bench may take to answer anything but a program."""
 
 PROGRAM_S: Final = 24 * 3600.0
+RESET_S: Final = 60.0
+"""A reset is answered when all drives are back, at the latest after 2000 cycles."""
 
 
 class HliClient:
@@ -111,9 +113,10 @@ class HliClient:
         result: dict[str, Any] = json.loads(self._one(selector, text, timeout_s=timeout_s))
         return result
 
-    def reset(self) -> None:
-        """CNC reset; returns when it has taken effect."""
-        self._one("cnc/reset")
+    def reset(self) -> str:
+        """CNC reset; return when it has taken effect, with which drives are out of operation all the same or ""."""
+        answer = self._one("cnc/reset", timeout_s=RESET_S)
+        return str(json.loads(answer)["note"]) if answer else ""
 
     def state(self) -> dict[str, Any]:
         """Return one look at the bench."""
@@ -155,7 +158,7 @@ class HliClient:
     ) -> bytes:
         answers = self._ask(f"{self.machine}/{selector}", question, timeout_s, encoding)
         if not answers:
-            raise EnvironmentLacks(f"the bench at {self.endpoint} did not answer {selector}")
+            raise EnvironmentLacks(f"the bench at {self.endpoint} has ended or does not answer {selector}")
         return next(iter(answers.values()))
 
     def _ask(

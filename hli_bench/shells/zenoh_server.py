@@ -42,6 +42,9 @@ COMMANDS: Final = "/commands"
 """End of the key of a PLC's commands."""
 STRANGERS: Final = 64
 """So many names of clients that write without being attached are remembered, each to be told once."""
+LOOKS: Final = 1000
+"""How often Zenoh is asked who listens after it said that this has changed: it says so before it knows itself, and
+asking it takes as long as a put."""
 REPLIES_A_CALL: Final = 64
 """Replies to reading queries sent per look at the inbox, so that a wide query does not stop the cycle."""
 
@@ -80,6 +83,8 @@ class HliServer:
         self._answers: deque[tuple[Any, Answers]] = deque()
         self._inbox: SimpleQueue[tuple[Callable[[Any], None], Any] | zenoh.Sample] = SimpleQueue()
         """What came, with what handles it; commands come bare: no Python runs for them before the bench looks."""
+        self._looks = LOOKS
+        self._image_wanted = False
         self._session = listen(endpoint, lockstep=lockstep)
         try:
             self._declare()
@@ -107,6 +112,11 @@ class HliServer:
         """Names of the PLCs that take part."""
         return list(self._mail)
 
+    def alive(self, plc: str) -> bool:
+        """Tell whether a PLC's session lives."""
+        self._drain()
+        return plc in self._alive_plcs
+
     def publish(
         self,
         cycle: int,
@@ -127,12 +137,16 @@ class HliServer:
         for path, packed in units:
             self._put(f"hli/unit/{path}", packed)
         self._values.cycle, self._values.dc_ns, self._values.image = cycle, dc_ns, image
-        if self._mail or self.has_image_subscribers():
+        if self._mail or self.image_wanted:
             self._image.put(pack_image(cycle, dc_ns, image))
 
-    def has_image_subscribers(self) -> bool:
-        """Tell whether anybody listens to `hli/image`."""
-        return bool(self._image.matching_status.matching)
+    @property
+    def image_wanted(self) -> bool:
+        """Whether anybody listens to `hli/image`."""
+        if self._looks:
+            self._looks -= 1
+            self._image_wanted = bool(self._image.matching_status.matching)
+        return self._image_wanted
 
     @property
     def stirs(self) -> bool:
@@ -240,6 +254,7 @@ class HliServer:
             congestion_control=zenoh.CongestionControl.DROP,
             express=True,
         )
+        self._matching = self._image.declare_matching_listener(on_network_thread(self._on_matching))
         self._alive = session.liveliness().declare_token(f"{machine}/bench/alive")
         put = self._inbox.put
         for key, on_sample in (
@@ -267,6 +282,9 @@ class HliServer:
             ("plc/*/attach", self._on_attach),
         ):
             session.declare_queryable(f"{machine}/{key}", queued(put, on_query), complete=True)
+
+    def _on_matching(self, _: zenoh.MatchingStatus) -> None:
+        self._looks = LOOKS
 
     def _put(self, path: str, value: bytes | str) -> None:
         encoding = JSON if isinstance(value, str) else PACKED

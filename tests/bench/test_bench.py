@@ -60,6 +60,45 @@ def test_a_script_that_fails_takes_part_no_more(tmp_path) -> None:
         assert bench.run("%b\nN10 G04 0.1\nM30\n").completed
 
 
+@pytest.mark.parametrize("where", ["cycle", "module"])
+@pytest.mark.parametrize("status", ["", "0", "7", "'bye'"])
+def test_a_script_that_exits_is_an_error_of_the_script(tmp_path, where, status) -> None:
+    """It is not the end of whoever runs the bench, least of all a good one."""
+    script = tmp_path / "exits.py"
+    leave = f"sys.exit({status})"
+    script.write_text(
+        "import sys\nfrom hli_bench.plc import Plc\n\n\nclass Exits(Plc):\n"
+        f"    def cycle(self, hli, io):\n        {leave if where == 'cycle' else 'pass'}\n\n\n"
+        f"{leave if where == 'module' else ''}\n"
+    )
+    with Bench("demo", plc=[script]) as bench, pytest.raises(InputError, match=r"exits\.py:\d+: SystemExit"):
+        bench.run("%a\nN10 G04 1\nM30\n")
+
+
+@pytest.mark.parametrize("period", ["pass", "period_us = 'fast'", "period_us = 1.5", "period_us = True"])
+def test_a_period_that_is_none_is_named(tmp_path, period) -> None:
+    script = tmp_path / "late.py"
+    script.write_text(f"class Late:\n    {period}\n\n    def cycle(self, hli, io):\n        pass\n")
+    with Bench("demo", plc=[script]) as bench, pytest.raises(InputError, match=r"late\.py: Late\.period_us"):
+        bench.run("%a\nM30\n")
+
+
+def test_a_script_that_hangs_while_it_is_loaded_is_named(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(plc_ports, "ANSWER_S", 0.3)
+    script = tmp_path / "hangs.py"
+    script.write_text("import time\ntime.sleep(3600)\n")
+    with (
+        Bench("demo", plc=[script]) as bench,
+        pytest.raises(InputError, match=r"hangs\.py:2: .* not been loaded"),
+    ):
+        bench.run("%a\nM30\n")
+
+
+def test_a_module_that_is_no_drive_model_is_named() -> None:
+    with pytest.raises(InputError, match=r"axis\.Z\.drive: 'os\.path' is no drive model"):
+        Bench("demo", {"axis.Z.drive": "os.path"})
+
+
 ENDLESS = """
 from threading import Event
 from time import sleep
@@ -93,9 +132,10 @@ def test_a_script_that_does_not_return_is_a_plc_that_stopped(tmp_path, monkeypat
         (note,) = notes
         loop = 1 + ENDLESS.splitlines().index("        while self.count > 20:")
         found = re.fullmatch(
-            r"PLC endless has not returned from cycle \d+ for 0\.3 s \((.*):(\d+)\): it takes part no more",
+            r"PLC endless has not returned from cycle \d+ within 0\.3 s \((.*):(\d+)\): it takes part no more",
             note,
         )
+        assert note in result.notes
         assert found, note
         assert found[1] == str(script)
         assert loop <= int(found[2]) <= loop + 2

@@ -16,6 +16,7 @@ import pytest
 from hli_bench import Bench
 from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError
 from hli_bench.base.loading import data_file
+from hli_bench.bench.remote import UNASKED
 from hli_bench.bench.result import Result
 from hli_bench.shells.plc_process import start as start_plc
 from hli_bench.shells.processes import Pipe, Worker, free_endpoint, work
@@ -121,6 +122,25 @@ def test_kernel_drives_and_terminals_in_processes_of_their_own_give_the_same_tra
     assert traced("several", settings, processes=True) == one
 
 
+@pytest.mark.parametrize(
+    "terminal",
+    [
+        {"terminal.probe.delay_ns": 2_500_000},
+        {"terminal.probe.delay_ns": 150_000_000},
+        {"terminal.probe.mode": "single_event"},
+        {"terminal.probe.period_us": 4000},
+        {"plant.probe.bounce_us": 700.0},
+    ],
+    ids=str,
+)
+def test_terminals_that_are_not_asked_in_every_cycle_show_the_same(
+    traced: Callable[..., Run], terminal: Mapping[str, Any]
+) -> None:
+    """What changes in an image without an edge: an input delay that is over, a status, a later refresh."""
+    settings = {**MACHINE, "axis.Z.kenngr.measure.signal": "PLC", **terminal}
+    assert traced("several", settings, processes=True) == traced("one", settings)
+
+
 def test_a_plc_of_its_own_in_lock_step_gives_the_same_trace(
     traced: Callable[..., Run], ashore: Callable[..., Run]
 ) -> None:
@@ -218,7 +238,7 @@ def test_a_worker_that_dies_is_named() -> None:
         worker = bench.engine.link._terminals  # type: ignore[attr-defined]
         os.kill(worker._process.pid, signal.SIGKILL)
         with pytest.raises(EnvironmentLacks, match="terminals_process has ended with status -9"):
-            bench.advance(10)
+            bench.advance(2 * UNASKED)
 
 
 def test_a_worker_whose_bench_closes_while_it_answers_ends_in_order(

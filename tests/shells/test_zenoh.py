@@ -319,7 +319,7 @@ def test_program_state_reset_and_faults_reach_the_bench(bench: SmallBench, elsew
     result = ask(bench, elsewhere, with_client, "run", "N10 M30", "a.nc")
     assert result == {"status": "completed", "program": "a.nc", "text": "N10 M30"}
     assert ask(bench, elsewhere, with_client, "state") == {"mode": 2}
-    assert ask(bench, elsewhere, with_client, "reset") is None
+    assert ask(bench, elsewhere, with_client, "reset") == ""
     assert ask(bench, elsewhere, with_client, "fault", {"inject": "probe_stuck"}) == {"inject": "probe_stuck"}
     assert [type(request) for request in bench.seen] == [RunProgram, State, Reset, FaultOrder]
     assert "no NC program" in ask(bench, elsewhere, with_client, "run", "  ")
@@ -406,7 +406,7 @@ def test_a_reader_that_never_reads_holds_nobody(bench: SmallBench) -> None:
         assert reader.stdout.readline() == "there\n"
         for _ in range(CYCLES_THAT_FILL):
             bench.publish(probe=struct.pack("<8xQ8x", bench.cycle + 1))
-        assert bench.server.has_image_subscribers(), "it is still there"
+        assert bench.server.image_wanted, "it is still there"
         reader.kill()
 
 
@@ -635,9 +635,11 @@ def test_a_plc_of_zenoh_and_struct_alone_forwards_the_probe(bench: SmallBench, p
 
 
 def test_image_subscribers_are_seen(bench: SmallBench, processes: Any) -> None:
-    assert not bench.server.has_image_subscribers()
-    start_script(bench, processes)
-    assert bench.server.has_image_subscribers()
+    assert not bench.server.image_wanted
+    process = start_script(bench, processes)
+    bench.serve(lambda: bench.server.image_wanted)
+    process.kill()
+    bench.serve(lambda: not bench.server.image_wanted)
 
 
 def watch_two(endpoint: str) -> list[Any]:

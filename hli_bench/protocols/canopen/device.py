@@ -269,15 +269,10 @@ class Device:
 
     def _hook_storage(self, index: int, signature: int, act: Callable[[range], None]) -> None:
         """Connect 0x1010 or 0x1011: the right signature acts, another is refused, reading gives 1."""
-        areas = {(index, sub): area for sub, area in _AREAS.items() if self.values.has(index, sub)}
-        self.values.on_reads(areas, lambda _: _supported)
-        self.values.on_writes(
-            {address: partial(_command, signature, act, area) for address, area in areas.items()}
-        )
-
-
-def _supported() -> int:
-    return _SUPPORTED
+        for sub, area in _AREAS.items():
+            if self.values.has(index, sub):
+                self.values.on_read(index, sub, lambda: _SUPPORTED)
+                self.values.on_write(index, sub, partial(_command, signature, act, area))
 
 
 def _command(signature: int, act: Callable[[range], None], area: range, value: Value) -> None:

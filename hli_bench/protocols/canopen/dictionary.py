@@ -65,7 +65,7 @@ class ObjectValues:
         self._write_hooks: dict[tuple[int, int], WriteHook] = {}
         self._record_hooks: dict[int, RecordHook] = {}
         self.hooked: Callable[[], None] = _nothing
-        """Is told of every new hook: for who keeps getters or receivers."""
+        """Is told of every new hook from when somebody keeps getters or receivers."""
 
     def on_read(self, index: int, subindex: int, hook: ReadHook) -> None:
         """Let `hook` answer reads of an object from now on."""
@@ -73,7 +73,7 @@ class ObjectValues:
         self.getters[index, subindex] = hook
         self.hooked()
 
-    def on_reads(
+    def on_read_made(
         self, addresses: Iterable[tuple[int, int]], make: Callable[[tuple[int, int]], ReadHook]
     ) -> None:
         """Let the hooks that `make` gives for an address answer reads of many objects, each made when it is needed."""
@@ -210,9 +210,9 @@ class ObjectValues:
 
     def _check(self, hooks: Mapping[tuple[int, int], object]) -> None:
         """Raise SdoAbort when one of the objects is not there."""
-        if not hooks.keys() <= self._entries.keys():
-            for address in hooks:
-                self._entry(*address)
+        for address in hooks:
+            if address not in self._entries:
+                raise self._missing(address[0])
 
     def _entry(self, index: int, subindex: int) -> Entry:
         try:

@@ -115,6 +115,10 @@ _Parameters = tuple[int, int, PdoPlan]
 """COB-ID with its bits, transmission type, plan."""
 
 
+def _mapping_words(values: ObjectValues, mapping: int, count: int) -> tuple[int, ...]:
+    return tuple(values.number(mapping, subindex) for subindex in range(1, count + 1))
+
+
 def _parameters(values: ObjectValues, communication: int, *, sending: bool) -> _Parameters:
     """Return the parameters of a PDO as they stand in the dictionary. Raises InputError (broken EDS)."""
     mapping = communication + MAPPING_OFFSET
@@ -128,7 +132,7 @@ def _parameters(values: ObjectValues, communication: int, *, sending: bool) -> _
         message = f"0x{communication:04X} and 0x{mapping:04X} lack an object that a PDO needs"
         raise InputError(message) from abort
     try:
-        words = tuple(values.number(mapping, subindex) for subindex in range(1, count + 1))
+        words = _mapping_words(values, mapping, count)
         return cob_word, transmission, make_plan(values.description, words, sending=sending)
     except SdoAbort as abort:
         raise InputError(f"default mapping of 0x{mapping:04X}: {abort}") from abort
@@ -220,9 +224,6 @@ class _Pdo:
         elif subindex <= MAX_ENTRIES:
             self._write_entry(value)
 
-    def _entries(self, count: int) -> tuple[int, ...]:
-        return tuple(self._values.number(self._mapping, subindex) for subindex in range(1, count + 1))
-
     def _write_cob_id(self, value: Value) -> None:
         word = int(value)
         identifier = word & _COB_ID_MASK
@@ -254,7 +255,8 @@ class _Pdo:
             raise SdoAbort(AbortCode.UNSUPPORTED_ACCESS)
         if count > MAX_ENTRIES or (count and not self._values.has(self._mapping, count)):
             raise SdoAbort(AbortCode.PDO_LENGTH)
-        self.plan = make_plan(self._values.description, self._entries(count), sending=self.sending)
+        words = _mapping_words(self._values, self._mapping, count)
+        self.plan = make_plan(self._values.description, words, sending=self.sending)
         self.bind()
         self._changed()
 
@@ -413,7 +415,10 @@ class Tpdo(_Pdo):
 
 
 class PdoSet:
-    """All PDOs of a node, in the order of their numbers; `changes` grows with every change of a parameter."""
+    """All PDOs of a node, in the order of their numbers; `changes` grows with every change of a parameter.
+
+    They begin as the EDS gives them, which a node's values do as well.
+    """
 
     __slots__ = ("_at_sync", "_by_cob_id", "_on_event", "_values", "changes", "rpdos", "tpdos")
 
@@ -426,8 +431,10 @@ class PdoSet:
         received, sent = _communication(values.description)
         self.rpdos = tuple(Rpdo(values, index, self._changed) for index in received)
         self.tpdos = tuple(Tpdo(values, index, self._changed) for index in sent)
+        hooks: dict[int, RecordHook] = {}
         for pdo in (*self.rpdos, *self.tpdos):
-            values.on_write_records(pdo.hooks)
+            hooks |= pdo.hooks
+        values.on_write_records(hooks)
 
     @property
     def signature(self) -> tuple[Signature, ...]:

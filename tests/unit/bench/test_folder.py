@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from hli_bench.base import loading
 from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.base.loading import data_file
 from hli_bench.bench import folder, schema
+from hli_bench.bench.config import MachineConfig
 from hli_bench.bench.folder import load
 from hli_bench.bench.sources import line_numbers, parse_set
 from hli_bench.plant.settings import Face
+from hli_bench.shells import texts
 
 FACE = {"plant.probe.Z.face_mm": 100, "plant.probe.Z.material": "below"}
 
@@ -295,6 +296,10 @@ def test_machine_names_lead_to_the_package() -> None:
         {"terminal.probe.wiring.ch1": "nothing"},
         {"terminal.probe.period_us": 1500},
         {"plc": []},
+        {"axis.X.list": "x.lis", "axis.X.drive": "drives.models.servo402", "axis.X.node_id": 1},
+        {"axis.X.list": 5, "axis.X.kenngr.swe_neg": 1},
+        {"terminal.probe.model": "EL1252", "terminal.probe.wiring.ch2": "cam.X"},
+        {"terminal.probe.wiring.ch2": "bad1", "fault": [{"kind": "probe_stuck", "target": "bad2"}]},
         {"plc": [{"script": "demo.py", "period_us": 4000}]},
         {"plc.0.name": "other", "plc.3.script": "demo.py"},
         {"fault": [{"kind": "probe_stuck", "at_ms": 5.0}], "plant.probe.Z.face_mm": 1.0},
@@ -315,8 +320,10 @@ def test_what_an_override_leaves_alone_is_kept_and_all_else_is_worked_out(
         except BenchError as error:
             return type(error), str(error)
 
-    load("demo")
+    plain = load("demo")
     on_top = outcome()
+    if isinstance(on_top, MachineConfig):
+        assert any(one is other for one, other in zip(on_top.axes, plain.axes, strict=True))
     monkeypatch.setattr(folder, "_plain", lambda *_: None)
     assert on_top == outcome()
 
@@ -329,13 +336,32 @@ def test_a_file_that_changes_is_read_anew(tmp_path: Path) -> None:
         assert start_mm in [axis.start_mm for axis in load(file.parent, {"seed": 1}).axes]
 
 
+def test_what_is_beside_a_machine_is_looked_at_each_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither another current directory nor a script that comes or goes is hidden by what was loaded before."""
+    for name in ("one", "two"):
+        shutil.copytree(data_file("machines", "demo"), tmp_path / name)
+        monkeypatch.chdir(tmp_path / name)
+        assert load(Path(), {"seed": 1}).name == name
+    supplied = load(Path(), {"seed": 1}).plcs[0].script
+    own = tmp_path / "two" / "demo.py"
+    own.write_text("")
+    assert load(Path(), {"seed": 1}).plcs[0].script.resolve() == own != supplied
+    own.unlink()
+    assert load(Path(), {"seed": 1}).plcs[0].script == supplied
+    (tmp_path / "two" / "x.lis").unlink()
+    with pytest.raises(InputError, match=r"x\.lis"):
+        load(Path(), {"seed": 1})
+
+
 def test_the_text_of_an_old_file_is_kept_while_it_is_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = tmp_path / "list.lis"
     file.write_text("one")
-    monkeypatch.setattr(loading, "_FRESH_NS", -1)
-    first = loading.text_of(file)
-    assert loading.text_of(file) is first
+    monkeypatch.setattr(texts, "time_ns", lambda: 2**62)
+    first = texts.text_of(file)
+    assert texts.text_of(file) is first
     file.write_text("three")
-    assert loading.text_of(file) == "three"
+    assert texts.text_of(file) == "three"

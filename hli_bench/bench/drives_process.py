@@ -20,7 +20,8 @@ from hli_bench.laws.rows import AXIS, Rows
 from hli_bench.laws.stride import exchange_in, exchange_out
 from hli_bench.runtime.machine_side import SYNC, MachineSide
 from hli_bench.shells.can_bus import CanBus
-from hli_bench.shells.processes import Pipe, work
+from hli_bench.shells.pipe import Pipe
+from hli_bench.shells.processes import work
 from hli_bench.shells.realtime import ask, settle
 from hli_bench.wire.can import CanFrame
 

@@ -14,7 +14,8 @@ from hli_bench.laws.channels import NEVER, advance_channels
 from hli_bench.laws.native import bind
 from hli_bench.laws.rows import MachineRows
 from hli_bench.plant import build as plant
-from hli_bench.shells.processes import Pipe, work
+from hli_bench.shells.pipe import Pipe
+from hli_bench.shells.processes import work
 
 
 def main(pipe: Pipe, arguments: Sequence[str]) -> None:

@@ -1,9 +1,8 @@
-"""Processes that belong to a bench: PLC scripts, drives, terminals; and the pipes between them."""
+"""Processes that belong to a bench: PLC scripts, drives, terminals."""
 
 import contextlib
 import os
 import socket
-import struct
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
@@ -14,8 +13,8 @@ from typing import Final, Self
 from hli_bench.base.errors import BenchError, EnvironmentLacks
 from hli_bench.base.loading import child_command
 from hli_bench.shells import plc_process
+from hli_bench.shells.pipe import Gone, Pipe
 
-_LENGTH: Final = struct.Struct("<I")
 END_S: Final = 5.0
 """Time that a process gets to end by itself."""
 ANSWER_S: Final = 30.0
@@ -88,76 +87,6 @@ class PlcProcess:
         status = self._process.poll()
         if status is not None:
             raise BenchError(f"the PLC process of {self._script} has ended with status {status}")
-
-
-class Gone(EnvironmentLacks):
-    """The process at the other end of a pipe has closed it."""
-
-    def __init__(self) -> None:
-        super().__init__("a process of the bench has gone")
-
-
-def framed(message: bytes) -> bytes:
-    """Return a message as it passes a pipe."""
-    return _LENGTH.pack(len(message)) + message
-
-
-class Pipe:
-    """Messages with a length in front, over one end of a socket pair. It waits for ever unless `limit` was called."""
-
-    def __init__(self, end: socket.socket) -> None:
-        self._end = end
-        self._file = end.makefile("rb")
-
-    def send(self, message: bytes) -> None:
-        """Send one message. Raises Gone when the other side has, TimeoutError when it is stuck."""
-        try:
-            self._end.sendall(framed(message))
-        except TimeoutError:
-            raise
-        except OSError as error:
-            raise Gone from error
-
-    def send_part(self, part: memoryview) -> int:
-        """Send some of what `framed` gave, return how many bytes; 0 when the limit is 0 and nothing goes.
-
-        Raises Gone when the other side has, TimeoutError when it is stuck.
-        """
-        try:
-            return self._end.send(part)
-        except BlockingIOError:
-            return 0
-        except TimeoutError:
-            raise
-        except OSError as error:
-            raise Gone from error
-
-    def limit(self, seconds: float) -> None:
-        """Wait at most so long from now on, 0: not at all; after a TimeoutError the pipe is of no use any more."""
-        self._end.settimeout(seconds)
-
-    def receive(self) -> bytes:
-        """Wait for one message. Raises EOFError when the other side has gone, TimeoutError when it is stuck."""
-        return self._read(_LENGTH.unpack(self._read(_LENGTH.size))[0])
-
-    def _read(self, size: int) -> bytes:
-        try:
-            data = self._file.read(size)
-        except ConnectionError:
-            data = b""
-        except TimeoutError:
-            raise
-        except OSError as error:
-            # The file object says so of every reading after one that took too long.
-            raise TimeoutError from error
-        if len(data) < size:
-            raise EOFError
-        return data
-
-    def close(self) -> None:
-        """Close this end."""
-        self._file.close()
-        self._end.close()
 
 
 class Worker:

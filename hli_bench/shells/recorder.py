@@ -19,7 +19,8 @@ from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Observer
 from hli_bench.runtime.frames import CycleBuffer
 from hli_bench.shells.candump import CandumpLog
-from hli_bench.shells.processes import ANSWER_S, Pipe, Worker, framed
+from hli_bench.shells.pipe import Pipe, framed
+from hli_bench.shells.processes import ANSWER_S, Worker
 from hli_bench.shells.record_file import OnNote, uninterrupted
 from hli_bench.shells.trace_file import BLOCK_CYCLES, TraceFile
 from hli_bench.wire.can import CanFrame

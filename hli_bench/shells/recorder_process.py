@@ -13,7 +13,8 @@ import numpy as np
 
 from hli_bench.base.errors import BenchError
 from hli_bench.laws.rows import LOG, LOG_CYCLES
-from hli_bench.shells.processes import Pipe, work
+from hli_bench.shells.pipe import Pipe
+from hli_bench.shells.processes import work
 from hli_bench.shells.record_file import INTERRUPTS
 from hli_bench.shells.recorder import KINDS, Batch, Sink, What
 

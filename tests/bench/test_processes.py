@@ -18,8 +18,9 @@ from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError
 from hli_bench.base.loading import data_file
 from hli_bench.bench.remote import UNASKED
 from hli_bench.bench.result import Result
+from hli_bench.shells.pipe import Pipe
 from hli_bench.shells.plc_process import start as start_plc
-from hli_bench.shells.processes import Pipe, Worker, free_endpoint, work
+from hli_bench.shells.processes import Worker, free_endpoint, work
 from hli_bench.shells.trace_file import TraceEvent, TraceFile, read
 
 PATIENCE_S = 60.0

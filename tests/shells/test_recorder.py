@@ -19,7 +19,7 @@ from hli_bench.bench.bench import Bench
 from hli_bench.cli.main import main
 from hli_bench.laws.rows import LOG_CYCLES
 from hli_bench.runtime.engine import Observer
-from hli_bench.shells.processes import Pipe, framed
+from hli_bench.shells.pipe import Pipe, framed
 from hli_bench.shells.record_file import INTERRUPTS, RecordFile, uninterrupted
 from hli_bench.shells.recorder import BATCH, Handover, Outbox, What, record
 from hli_bench.shells.trace_file import BLOCK_CYCLES, AxesBlock, TraceEvent, TraceReader, read

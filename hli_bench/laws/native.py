@@ -29,7 +29,7 @@ ENTRIES: Final[Mapping[Entry, int]] = {
     exchange_in: 0,
     exchange_out: 0,
     advance_channels: 2,
-    put_segment: 2,
+    put_segment: 3,
 }
 """Laws that Python calls, and how many of their last parameters change from call to call; the others are bound."""
 COMPILING: Final = "compiling the laws of motion, once until they, numba or the processor change: some 10 s"

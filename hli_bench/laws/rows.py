@@ -392,7 +392,7 @@ TABLES: Final[Mapping[str, tuple[np.dtype[Any], int]]] = {
     "leg": (LEG, 2),
     "plan": (PLAN, 1),
     "tip": (TIP, 1),
-    "dynamics": (DYNAMICS, 1),
+    "kinds": (DYNAMICS, 2),
     "target": (np.dtype("f8"), 1),
     "watch": (WATCH, 1),
     "history": (np.dtype("i8"), 2),

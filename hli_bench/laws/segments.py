@@ -87,14 +87,17 @@ def put_segment(
     tip: Rows,
     target: Rows,
     cycle_s: float,
-    dynamics: Rows,
+    kinds: Rows,
+    kind: int,
     feed: float,
     rapid: int,
 ) -> int:
     """Put a straight way to `target` (n, 0.1 um; NaN: not programmed) behind the prepared path.
 
-    `dynamics` (n,) is what the axes may do in it, `feed` in 0.1 um/s. Returns the number of the segment or NOTHING.
+    `kinds` (k, n) is what the axes may do in each kind of way, `kind` the one it is, `feed` in 0.1 um/s. Returns the
+    number of the segment or NOTHING.
     """
+    dynamics = kinds[kind]
     here = plan[0]
     number = path[0]["tail"]
     slot = number % SEGMENTS

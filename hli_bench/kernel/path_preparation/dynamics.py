@@ -80,12 +80,15 @@ def homing_rate(axis: AxisSetup) -> float:
     return tenth_um_per_s2(homing_acceleration(axis.params.getriebe[0]))
 
 
-def rows(dynamics: Iterable[Dynamics]) -> Rows:
-    """Return what the axes may do as rows for the laws, shape (n,)."""
+def rows(kinds: Iterable[Iterable[Dynamics]]) -> Rows:
+    """Return what the axes may do in each kind of way as rows for the laws, shape (k, n)."""
     return np.array(
         [
-            (*((ramp.low, ramp.high, ramp.split) for ramp in (one.up, one.down, one.hold)), one.limit)
-            for one in dynamics
+            [
+                (*((ramp.low, ramp.high, ramp.split) for ramp in (one.up, one.down, one.hold)), one.limit)
+                for one in dynamics
+            ]
+            for dynamics in kinds
         ],
         DYNAMICS,
     )

@@ -1,7 +1,7 @@
 """The look-ahead as the channel commands it; its numbers are the compiled `put_segment`."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -9,11 +9,14 @@ from hli_bench.base.ids import AxisIndex
 from hli_bench.base.units import TENTH_UM_PER_MM, tenth_um_per_s
 from hli_bench.kernel.blocks import Line, MeasuringRun
 from hli_bench.kernel.path_preparation import dynamics
-from hli_bench.kernel.path_preparation.dynamics import Dynamics, Ramp
+from hli_bench.kernel.path_preparation.dynamics import Ramp
 from hli_bench.kernel.setup import KernelSetup
-from hli_bench.laws.native import Entry, bind
+from hli_bench.laws.native import bind
 from hli_bench.laws.rows import SEGMENTS, KernelRows
 from hli_bench.laws.segments import NOTHING, put_segment
+
+RAPID, FEED, MEASURING = range(3)
+"""Kinds of ways by what the axes may do in them, as they stand in the rows of the law."""
 
 
 class Preparation:
@@ -24,9 +27,23 @@ class Preparation:
         self._rows = rows
         measuring = [dynamics.measuring(axis, setup.channel) for axis in setup.axes]
         self._target = np.empty(len(setup.axes))
-        self._rapid = self._way(dynamics.rapid(axis, setup.channel) for axis in setup.axes)
-        self._feed = self._way(dynamics.feed(axis, setup.channel) for axis in setup.axes)
-        self._measuring = self._way(profile for profile, _ in measuring)
+        kinds = (
+            [dynamics.rapid(axis, setup.channel) for axis in setup.axes],
+            [dynamics.feed(axis, setup.channel) for axis in setup.axes],
+            [profile for profile, _ in measuring],
+        )
+        self._law = bind(
+            put_segment,
+            rows.axis,
+            rows.path,
+            rows.segment,
+            rows.leg,
+            rows.plan,
+            rows.tip,
+            self._target,
+            setup.cycle_ns * 1e-9,
+            dynamics.rows(kinds),
+        )
         self._behind_event = [ramp for _, ramp in measuring]
         rows.tip["linear"] = [axis.kind == "T" for axis in setup.axes]
 
@@ -43,8 +60,8 @@ class Preparation:
 
     def line(self, block: Line) -> int | None:
         """Put a block of straight motion; return its segment number, None when it moves nothing."""
-        way = self._rapid if block.rapid else self._feed
-        return self._put(way, block.target, tenth_um_per_s(block.feed), rapid=block.rapid)
+        kind = RAPID if block.rapid else FEED
+        return self._put(kind, block.target, tenth_um_per_s(block.feed), rapid=block.rapid)
 
     def measuring_run(
         self, block: MeasuringRun, feed: float, offsets: Mapping[AxisIndex, float]
@@ -54,7 +71,7 @@ class Preparation:
         `offsets` (0.1 um) is how far past the target an axis may go while nothing was probed
         (P-AXIS-00467). Returns None when the block moves nothing.
         """
-        number = self._put(self._measuring, block.target, feed, rapid=False)
+        number = self._put(MEASURING, block.target, feed, rapid=False)
         if number is None:
             return None
         segment, leg = self._rows.segment[number % SEGMENTS], self._rows.leg[number % SEGMENTS]
@@ -87,28 +104,12 @@ class Preparation:
     def retraction(self, target: Mapping[AxisIndex, float], velocity: float) -> int | None:
         """Put a straight way to `target` (0.1 um, ACS) with `velocity` (0.1 um/s): relief after a fixed stop."""
         millimetres = {axis: position / TENTH_UM_PER_MM for axis, position in target.items()}
-        return self._put(self._feed, millimetres, velocity, rapid=False)
+        return self._put(FEED, millimetres, velocity, rapid=False)
 
-    def _way(self, may: Iterable[Dynamics]) -> Entry:
-        """Return the law that puts a straight way in which the axes may do what `may` says."""
-        rows = self._rows
-        return bind(
-            put_segment,
-            rows.axis,
-            rows.path,
-            rows.segment,
-            rows.leg,
-            rows.plan,
-            rows.tip,
-            self._target,
-            self._setup.cycle_ns * 1e-9,
-            dynamics.rows(may),
-        )
-
-    def _put(self, way: Entry, target: Mapping[AxisIndex, float], feed: float, *, rapid: bool) -> int | None:
-        """Put a straight way; `feed` in 0.1 um/s."""
+    def _put(self, kind: int, target: Mapping[AxisIndex, float], feed: float, *, rapid: bool) -> int | None:
+        """Put a straight way of a kind; `feed` in 0.1 um/s."""
         self._target.fill(math.nan)
         for axis, position in target.items():
             self._target[axis] = position * TENTH_UM_PER_MM
-        number: int = way(feed, rapid)
+        number: int = self._law(kind, feed, rapid)
         return None if number == NOTHING else number

@@ -71,6 +71,8 @@ class Bench:
             raise InputError(f"realtime is for a bench by the clock (pace real), not for pace {pace}")
         if pace not in ("free", "real"):
             raise InputError(f"pace {pace!r}: expected free or real")
+        if settings is not None and not isinstance(settings, Mapping):
+            raise InputError(f"settings {settings!r}: expected a mapping of keys to values")
         if isinstance(plc, str | Path):
             raise InputError(f"plc {str(plc)!r}: expected a list of scripts")
         self.config: MachineConfig = load(machine, settings or {})

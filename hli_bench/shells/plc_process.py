@@ -14,7 +14,7 @@ from typing import Any, Final
 import zenoh
 
 from hli_bench.base import garbage
-from hli_bench.base.errors import BenchError
+from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.loading import child_command
 from hli_bench.plc import Task, load, period_of
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
@@ -26,6 +26,7 @@ RECONNECT_S: Final = 2.0
 LOOK_S: Final = 0.02
 WAITING: Final = 100_000
 """Messages that may wait for a script that dawdles in real pace; with more of them its link to the bench stands."""
+NOT_IN_A_KEY: Final = "/*$?#"
 
 DETACHED: Final = b"detached"
 GONE: Final = b"gone"
@@ -197,9 +198,12 @@ def attach(
 
     Raises EnvironmentLacks when no bench is there, InputError when the script fails or the bench refuses it.
     """
+    name = name or script.stem
+    if set(name) & set(NOT_IN_A_KEY):
+        raise InputError(f"plc {name!r}: a name may hold none of {' '.join(NOT_IN_A_KEY)}")
     load(script)
     with HliClient(endpoint, machine, PLC_LEASE_MS) as client:
-        ScriptClient(client, script, name or script.stem, period_us, on_line).run()
+        ScriptClient(client, script, name, period_us, on_line).run()
 
 
 def start(

@@ -31,6 +31,7 @@ def test_a_limit_of_machine_time_aborts_a_program() -> None:
     ("options", "message"),
     [
         ({"pace": "slow"}, "pace 'slow': expected free or real"),
+        ({"settings": ["cycle_us=1000"]}, "settings .*: expected a mapping"),
         ({"plc": "demo.py"}, r"plc 'demo\.py': expected a list of scripts"),
     ],
 )

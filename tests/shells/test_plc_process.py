@@ -17,7 +17,7 @@ import pytest
 from hli_bench import Bench
 from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError, NotEmulated
 from hli_bench.base.loading import data_file
-from hli_bench.bench import plc_ports
+from hli_bench.bench import door, plc_ports
 from hli_bench.bench.door import result_reply
 from hli_bench.protocols.hli.layout import Layout
 from hli_bench.protocols.hli.packing import IMAGE_HEADER
@@ -274,6 +274,12 @@ def test_arguments_that_make_no_sense(given: list[str], capsys: pytest.CaptureFi
     assert "PERIOD_US" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("name", ["a/b", "a*", "a$b", "a?", "#"])
+def test_a_name_that_can_be_no_part_of_a_key_is_bad_input(name: str, do: Callable[..., list[str]]) -> None:
+    (said,) = do("plc", "demo.py", "--name", name, status=2)
+    assert "a name may hold none of" in said
+
+
 def test_a_period_that_is_given_replaces_the_scripts_own(serve: Any) -> None:
     bench = serve("--plc", "none", "--pace", "free")
     script = data_file("plc_scripts", "demo.py")
@@ -340,6 +346,23 @@ def test_a_plc_may_take_its_time_to_start_in_real_pace(serve: Any, tmp_path: Pat
         assert 7 in values
     assert plc.process.poll() is None
     assert not bench.command.err
+
+
+def test_a_reset_says_which_drives_stay_out(
+    endpoint: str, start: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(door, "RESET_CYCLES", 5)
+    with Bench("demo", plc=[], zenoh=endpoint) as bench:
+        bench.start_up()
+        monkeypatch.setattr(type(bench.kernel), "ready", property(lambda _: False))
+        monkeypatch.setattr(type(bench.kernel), "out", lambda _: ["X", "Z"])
+        command = start("reset", "--connect", endpoint)
+        while command.process.poll() is None:
+            bench._door.wait(0.05)
+            if bench._door.waiting:
+                bench.advance(1)
+    assert command.end() == 1
+    assert command.err == ["still out of operation: X, Z"]
 
 
 def test_a_worker_that_is_stuck_is_named_and_ended() -> None:

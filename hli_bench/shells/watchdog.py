@@ -15,8 +15,6 @@ T = TypeVar("T")
 
 LOOK_S: Final = 1.0
 """Between two looks at the call under way; seldom, because a paced bench shares Python's lock with who looks."""
-GRACE_S: Final = 2 * LOOK_S
-"""A call that comes back so late and was not ended has kept Python's lock to itself, so that nobody could look."""
 SIGNAL: Final = signal.SIGURG
 """What wakes the main thread; ignored where nobody handles it."""
 DEBUGGERS: Final = ("bdb", "pdb", "pydevd", "_pydevd")
@@ -28,46 +26,54 @@ class Overdue(BaseException):
 
 
 class Watchdog:
-    """Watches the calls that the main thread makes, the innermost; all there is to know is when it must be back.
+    """Watches the calls that the main thread makes, the innermost of them.
 
-    A signal ends it, because only that interrupts a call which waits in the operating system. A thread sends it: the
-    operating system's timers belong to the user, whose tests may have a time-out of their own.
+    A signal ends one that takes too long, because only that interrupts a call which waits in the operating system. A
+    thread sends it: the operating system's timers belong to the user, whose tests may have a time-out of their own. The
+    thread has the clock; a call costs no more than a count.
     """
 
     def __init__(self) -> None:
-        self._until = inf
-        self._told = False
-        """Overdue has been raised in the present call."""
         self._main = threading.main_thread().ident
         self._watching = False
+        self._count = 0
+        """Grows with every begin and end of a call."""
+        self._limit_s = inf
+        """What the present call may take."""
+        self._overdue = -1
+        """The count of a call that has taken longer."""
+        self._told = False
+        """Overdue has been raised in the present call."""
 
     def limited(self, limit_s: float, work: Callable[[*A], T], *arguments: *A) -> T:
-        """Return what `work` returns within `limit_s` by the clock, else raise Overdue, out of it where that can be.
+        """Return what `work` returns; raise Overdue out of it when it takes longer than `limit_s` by the clock.
 
-        Nothing ends a single step outside of Python before it returns, nor what catches even Overdue; it is overdue
-        then. A call that is held in a debugger is not limited, nor are those in other threads than the main one, where
-        Python handles no signals, and in programs that handle SIGURG themselves.
+        Nothing ends a single step outside of Python before it returns, nor what catches even Overdue; that is raised
+        when it returns. A call that is held in a debugger is not limited, nor are those in other threads than the main
+        one, where Python handles no signals, and in programs that handle SIGURG themselves.
         """
-        if threading.get_ident() != self._main or not self._watches():
+        if threading.get_ident() != self._main or not (self._watching or self._watch()):
             return work(*arguments)
-        outer = self._until
+        outer, self._limit_s = self._limit_s, limit_s
+        self._count += 1
         self._told = False
-        self._until = monotonic() + limit_s
         try:
             result = work(*arguments)
-            if self._told or monotonic() > self._until + GRACE_S:
+            if self._told:
                 raise Overdue
             return result
         finally:
-            self._until = outer
+            self._limit_s = outer
+            self._count += 1
 
-    def _watches(self) -> bool:
-        """Tell whether somebody looks; see to it where it can be."""
-        if not self._watching and signal.getsignal(SIGNAL) in (signal.SIG_DFL, self._on_signal):
-            self._watching = True
-            signal.signal(SIGNAL, self._on_signal)
-            threading.Thread(target=self._look, name="watchdog", daemon=True).start()
-        return self._watching
+    def _watch(self) -> bool:
+        """Begin to look, unless the signal is somebody else's; tell whether somebody looks."""
+        if signal.getsignal(SIGNAL) not in (signal.SIG_DFL, self._on_signal):
+            return False
+        self._watching = True
+        signal.signal(SIGNAL, self._on_signal)
+        threading.Thread(target=self._look, name="watchdog", daemon=True).start()
+        return True
 
     def forked(self) -> None:
         """Begin anew in a child process, which has none of the threads."""
@@ -75,18 +81,23 @@ class Watchdog:
         self._main = threading.main_thread().ident
 
     def _look(self) -> None:
+        seen, since = self._count, monotonic()
         while True:
             sleep(LOOK_S)
-            if monotonic() > self._until and self._main is not None:
+            count, limit_s, now = self._count, self._limit_s, monotonic()
+            if count != seen:
+                seen, since = count, now
+            elif now - since > limit_s and self._main is not None:
+                self._overdue = count
                 signal.pthread_kill(self._main, SIGNAL)
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
         """End the call, and again if it has caught that; let it be where Ctrl-C ends it or somebody debugs it."""
-        if monotonic() <= self._until:
+        if self._overdue != self._count:
             return
         interrupted = isinstance(sys.exc_info()[1], KeyboardInterrupt)
         if interrupted or any(module.startswith(DEBUGGERS) for module in _modules(frame)):
-            self._until = inf
+            self._count += 2
             return
         self._told = True
         raise Overdue

@@ -63,13 +63,6 @@ def test_a_call_that_catches_everything_is_overdue_when_it_returns() -> None:
     assert isinstance(caught[0], Overdue)
 
 
-def test_a_call_that_lets_nobody_look_is_overdue_when_it_returns(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = [0.0]
-    monkeypatch.setattr(watchdog, "monotonic", lambda: now[0])
-    with pytest.raises(Overdue):
-        WATCHDOG.limited(10.0, now.__setitem__, 0, 10.0 + watchdog.GRACE_S + 1.0)
-
-
 def test_a_call_in_a_debugger_is_let_be() -> None:
     debugger = {"__name__": "bdb"}
     exec("def prompt(answer):\n    answer.wait()\n    return 'went on'", debugger)

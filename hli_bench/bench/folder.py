@@ -134,10 +134,8 @@ class _Loader:
         self.machine = self._config()
         self._finish()
         assert self.machine is not None
-        not_built = self.refused
-        not_built += [
-            f"fault {fault.kind}" for fault in self.machine.faults if fault.kind not in BUILT_FAULTS
-        ]
+        faults = [f"fault {fault.kind}" for fault in self.machine.faults if fault.kind not in BUILT_FAULTS]
+        not_built = [*self.refused, *faults]
         if not_built:
             raise NotEmulated("; ".join(not_built))
         return self.machine

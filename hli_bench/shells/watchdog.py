@@ -48,23 +48,25 @@ class Watchdog:
     def limited(self, limit_s: float, work: Callable[[*A], T], *arguments: *A) -> T:
         """Return what `work` returns; raise Overdue out of it when it takes longer than `limit_s` by the clock.
 
-        Nothing ends a single step outside of Python before it returns, nor what catches even Overdue; that is raised
-        when it returns. A call that is held in a debugger is not limited, nor are those in other threads than the main
-        one, where Python handles no signals, and in programs that handle SIGURG themselves.
+        What catches even Overdue is not ended before it returns, and Overdue is raised then. A single step outside of
+        Python is not ended either; one that keeps Python's lock from all others is not even noticed. A call held in a
+        debugger is not limited, nor are those in other threads than the main one, where Python handles no signals,
+        and in programs that handle SIGURG themselves.
         """
         if threading.get_ident() != self._main or not (self._watching or self._watch()):
             return work(*arguments)
-        outer, self._limit_s = self._limit_s, limit_s
+        # Counted before the limit changes, so that no limit is held against what came before or comes after.
         self._count += 1
-        self._told = False
+        outer, told = self._limit_s, self._told
+        self._limit_s, self._told = limit_s, False
         try:
             result = work(*arguments)
             if self._told:
                 raise Overdue
             return result
         finally:
-            self._limit_s = outer
             self._count += 1
+            self._limit_s, self._told = outer, told
 
     def _watch(self) -> bool:
         """Begin to look, unless the signal is somebody else's; tell whether somebody looks."""

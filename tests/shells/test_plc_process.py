@@ -84,6 +84,7 @@ def test_a_plc_that_goes_ends_the_program_but_not_the_bench(
         assert client.state()["plcs"] == []
         client.reset()
         assert client.state()["state"] == "ready"
+    assert bench.command.err == ["PLC demo has gone in a program: its session has ended, or was silent"]
 
 
 @pytest.mark.parametrize("pace", ["free", "real"])

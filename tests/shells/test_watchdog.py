@@ -80,6 +80,15 @@ def test_a_call_within_a_call_gives_the_limit_back() -> None:
         WATCHDOG.limited(LIMIT_S, nested)
 
 
+def test_a_call_is_not_blamed_for_one_within_it() -> None:
+    def survives() -> str:
+        with pytest.raises(Overdue):
+            WATCHDOG.limited(LIMIT_S, compute)
+        return "went on"
+
+    assert WATCHDOG.limited(3600.0, survives) == "went on"
+
+
 def test_ctrl_c_is_not_lost_in_a_call_that_takes_long_to_clean_up() -> None:
     def interrupted() -> None:
         try:

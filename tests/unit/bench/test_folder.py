@@ -336,6 +336,17 @@ def test_a_file_that_changes_is_read_anew(tmp_path: Path) -> None:
         assert start_mm in [axis.start_mm for axis in load(file.parent, {"seed": 1}).axes]
 
 
+def test_a_list_value_of_minus_zero_stays_with_its_machine(tmp_path: Path) -> None:
+    """Equal values that are not the same must not be shared."""
+    shutil.copytree(data_file("machines", "demo"), tmp_path / "mine")
+    file = tmp_path / "mine" / "x.lis"
+    changed, count = re.subn(r"(?m)^(antr\.function\[0\]\.min_limit\s+)0\.0", r"\1-0.0", file.read_text())
+    assert count == 1
+    file.write_text(changed)
+    limits = [load(place).axes[0].params.antr.function[0].min_limit for place in (tmp_path / "mine", "demo")]
+    assert [str(limit) for limit in limits] == ["-0.0", "0.0"]
+
+
 def test_what_is_beside_a_machine_is_looked_at_each_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -58,6 +58,13 @@ def installed(name: str) -> Path:
     return Path(spec.origin)
 
 
+def version() -> str:
+    """Return the version of hli-bench that is installed."""
+    from importlib import metadata
+
+    return metadata.version("hli-bench")
+
+
 def how_to_install(package: str) -> str:
     """Return the command that installs a package for the Python that runs here, be it a checkout's or any other."""
     return f"{shlex.quote(sys.executable)} -m pip install {package}"

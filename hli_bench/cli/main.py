@@ -10,10 +10,11 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final, NoReturn
 
 from hli_bench.base import garbage
 from hli_bench.base.errors import BenchError
+from hli_bench.base.loading import version
 from hli_bench.cli import (
     doctor,
     drive,
@@ -40,6 +41,14 @@ EPILOG: Final = (
 )
 
 
+class _Version(argparse.Action):
+    """Prints the version; looked for when asked, because that takes longer than the rest of a start."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> NoReturn:
+        print("hli-bench", version())
+        parser.exit()
+
+
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
     top = argparse.ArgumentParser(
@@ -47,6 +56,7 @@ def parser() -> argparse.ArgumentParser:
         description="An emulated CNC with emulated drives and terminals, open to PLC logic over the HLI.",
         epilog=EPILOG,
     )
+    top.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = top.add_subparsers(dest="command", required=True, title="commands")
     for module in (run, serve, plc, hli, state, reset, params, drive, machine, trace, sweep, unbuilt, doctor):
         module.add(commands)

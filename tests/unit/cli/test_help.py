@@ -2,6 +2,8 @@
 
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -64,6 +66,14 @@ def test_options_of_a_bench_name_their_defaults(
     assert f"(default {pace})" in text
     assert "(default demo)" in text
     assert "(default inproc)" in text
+
+
+def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    project = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text())["project"]
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"hli-bench {project['version']}\n"
 
 
 def test_a_command_is_needed() -> None:

@@ -27,7 +27,7 @@ from hli_bench.sweep.work import Job, Row, Run, run_chunk
 RUNS: Final = 1000
 CHUNK: Final = 10
 ADDITIONS: Final = 100_000
-OURS: Final = 0.9
+OURS: Final = 0.8
 """A core on which the reference reaches this part of its best is not shared."""
 TASKS: Final = 80
 TASK_S: Final = 0.05

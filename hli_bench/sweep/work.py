@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from hli_bench.base import garbage
 from hli_bench.base.errors import BenchError
 from hli_bench.bench.bench import Bench
 from hli_bench.sweep.draws import Plain
@@ -75,6 +76,7 @@ def run_chunk(job: Job, runs: Sequence[Run]) -> list[Row | Failure]:
     for run in runs:
         try:
             rows.append(_row(job, machine, run))
+            garbage.of_one_run()
         except BenchError as error:
             rows.append(Failure(run.number, str(error), error.exit_status))
             break

@@ -103,13 +103,17 @@ class HliDoor:
                 self._server.put_error({name: getattr(error, name) for name in error.__slots__})
 
     def refused(self, refusals: Iterable[Refusal]) -> None:
-        """Report writes that were refused; people are told once for each PLC and element."""
+        """Report writes that were refused; people are told once for each PLC and element, in one line a reason."""
         refusals = list(refusals)
         self._server.report(refusals)
+        new: dict[tuple[str, str], list[str]] = {}
         for refusal in refusals:
             if (refusal.writer, refusal.path) not in self._told:
                 self._told.add((refusal.writer, refusal.path))
-                self._on_note(f"plc {refusal.writer}: {refusal.path}: {refusal.reason}")
+                new.setdefault((refusal.writer, refusal.reason), []).append(refusal.path)
+        for (writer, reason), paths in new.items():
+            more = f" and {len(paths) - 1} more" if len(paths) > 1 else ""
+            self._on_note(f"plc {writer}: {paths[0]}{more}: {reason}")
 
     def state_changed(self) -> None:
         """Put mode and state of the CNC."""

@@ -65,7 +65,8 @@ class _Turn:
 class ScriptClient:
     """A task with its session: takes images off the net, puts commands. `period_us` None: the script's own.
 
-    `on_line` gets a line for people whenever the script takes part, and when the bench has ended.
+    `on_line` gets a line for people whenever the script takes part, when the bench refuses what it writes (once for
+    each reason), and when the bench has ended.
     """
 
     def __init__(
@@ -84,6 +85,9 @@ class ScriptClient:
         self._key = f"{client.machine}/plc/{name}"
         self._image_key = f"{client.machine}/hli/image"
         self._terminal_keys = f"{client.machine}/io/"
+        self._errors_key = f"{client.machine}/hli/errors"
+        self._told: set[str] = set()
+        """Reasons for refusals that people know."""
         self._packing = CommandsPacking(client.layout)
         self._io: dict[str, bytes] = {}
         # One queue that Zenoh fills without Python's lock, so that the script has the thread that Ctrl-C interrupts to
@@ -164,6 +168,8 @@ class ScriptClient:
         """Keep a terminal; return whether to attach anew when a sample ends this, None for one that does not."""
         if key.startswith(self._terminal_keys):
             self._io[key.removeprefix(self._terminal_keys)] = payload(sample)
+        elif key == self._errors_key:
+            self._tell(json.loads(payload(sample)))
         elif key == self._key:
             news = payload(sample)
             if news == DETACHED:
@@ -171,6 +177,13 @@ class ScriptClient:
             if news == GONE:
                 return self._bench_is_back()
         return None
+
+    def _tell(self, refusal: Mapping[str, Any]) -> None:
+        """Tell people why a write of this PLC counts for nothing."""
+        reason = refusal["reason"]
+        if refusal["writer"] == self._name and reason not in self._told:
+            self._told.add(reason)
+            self._on_line(f"refused: {refusal['path']}: {reason}")
 
     def _bench_is_back(self) -> bool:
         """Tell whether a bench that went away shows up again: then only the link broke, e.g. of a frozen PLC."""

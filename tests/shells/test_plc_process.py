@@ -52,7 +52,9 @@ class Second(Plc):
     period_us = 1000
 
     def cycle(self, hli, io):
-        hli.ax[3].lr_mc_control.probing_signal.command_w = not hli.ax[3].lr_mc_control.probing_signal.command_w
+        units = hli.ax[3].lr_mc_control
+        units.probing_signal.command_w = not units.probing_signal.command_w
+        units.timestamp.command_w = units.timestamp.command_w + 1
 """
 
 
@@ -140,15 +142,17 @@ def test_the_second_plc_on_a_unit_is_refused_and_reported(serve: Any, probe: Pat
     with bench.client() as client:
         reported = client.hli_errors()
     assert reported["refused"] > 0
-    last = reported["last"][-1]
-    assert last["path"] == f"{UNIT}/command_w"
-    assert last["writer"] == "second"
-    assert "'demo'" in last["reason"]
+    last = reported["last"][-2:]
+    assert [one["path"].rsplit("/", 2)[1] for one in last] == ["probing_signal", "timestamp"]
+    assert {one["writer"] for one in last} == {"second"}
+    assert {one["reason"] for one in last} == {"the unit belongs to PLC 'demo'"}
     assert second.process.poll() is None
     bench.command.interrupt()
     assert bench.command.end() == 0
-    told = [line for line in bench.command.err if line.startswith(f"plc second: {UNIT}/command_w: ")]
-    assert len(told) == 1, bench.command.err
+    assert bench.command.err == [f"plc second: {UNIT}/command_w and 1 more: the unit belongs to PLC 'demo'"]
+    assert second.end() == 0
+    refused = [line for line in second.out if line.startswith("refused: ")]
+    assert refused == [f"refused: {UNIT}/command_w: the unit belongs to PLC 'demo'"]
 
 
 def test_a_second_plc_of_the_same_name_is_turned_away(serve: Any, start: Any) -> None:

@@ -21,6 +21,7 @@ from hli_bench.shells.zenoh_requests import (
     WriteRequest,
 )
 from hli_bench.shells.zenoh_server import HliServer
+from hli_bench.wire.hli import Commands
 
 RESET_CYCLES: Final = 2000
 """Cycles within which the drives must be back after a reset, else it is answered all the same."""
@@ -103,12 +104,12 @@ class HliDoor:
                 self._server.put_error({name: getattr(error, name) for name in error.__slots__})
 
     def refused(self, refusals: Iterable[Refusal]) -> None:
-        """Report writes that were refused; people are told once for each PLC and element, in one line a reason."""
+        """Report writes that were refused; people are told of those of PLCs, once for each element, a line a reason."""
         refusals = list(refusals)
         self._server.report(refusals)
         new: dict[tuple[str, str], list[str]] = {}
         for refusal in refusals:
-            if (refusal.writer, refusal.path) not in self._told:
+            if refusal.writer and (refusal.writer, refusal.path) not in self._told:
                 self._told.add((refusal.writer, refusal.path))
                 new.setdefault((refusal.writer, refusal.reason), []).append(refusal.path)
         for (writer, reason), paths in new.items():
@@ -148,12 +149,17 @@ class HliDoor:
                 request.refuse("unknown request")
 
     def _write(self, request: WriteRequest) -> None:
-        refusals = self._engine.access.apply(request.write)
-        if refusals:
-            request.refuse(refusals[0].reason)
+        engine = self._engine
+        try:
+            write = engine.access.write_of(request.write)
+        except InputError as error:
+            request.refuse(error.message)
             return
-        self._engine.wake()
-        self._written.append((self._engine.cycle + 1, request))
+        refusals = engine.apply(Commands("", engine.cycle, (write,)))
+        if refusals:
+            request.deny(refusals[0].reason)
+            return
+        self._written.append((engine.cycle + 1, request))
 
     def _acknowledge(self) -> None:
         """Answer the writes that the kernel has seen by now, and the resets after which all drives are back."""

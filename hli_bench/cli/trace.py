@@ -220,9 +220,9 @@ def _event_texts(event: "TraceEvent", meta: "TraceMeta", selection: Selection) -
         yield f"{value['signal']} {_level(value['level'])}"
     elif event.topic == "plc":
         for path, written in value["writes"]:
-            yield f"{value['plc']}: {path} = {_level(written)}"
+            yield f"{value['plc'] or 'client'}: {path} = {_level(written)}"
     elif event.topic == "refused":
-        yield f"{value['writer']}: {value['path']}: {value['reason']}"
+        yield f"{value['writer'] or 'client'}: {value['path']}: {value['reason']}"
     elif event.topic == "gaps":
         yield f"{value['count']} cycles are missing, from {value['first']} on"
     else:

@@ -184,8 +184,8 @@ class Engine:
         """Let the kernel decide in the next cycle: something has been put from outside."""
         self._decide = True
 
-    def apply(self, commands: Commands) -> None:
-        """Let a PLC's writes count from the next cycle on."""
+    def apply(self, commands: Commands) -> list[Refusal]:
+        """Let writes from outside count from the next cycle on; return those that were refused."""
         refusals = self.access.apply(commands)
         for observer in self.observers:
             observer.commands(commands)
@@ -193,6 +193,7 @@ class Engine:
             for listener in (*self.observers, *self.listeners):
                 listener.refused(self.cycle, refusals)
         self._decide = True
+        return refusals
 
     def attach(self, plc: PlcPort) -> None:
         """Let a PLC take part from the next cycle on that its period divides."""

@@ -30,6 +30,10 @@ class Request:
         """Answer that it was not done and why; it is counted and put in `hli/errors` too."""
         path = self.key.partition("/")[2].removeprefix("hli/unit/")
         self.report([Refusal(path, reason)])
+        self.deny(reason)
+
+    def deny(self, reason: str) -> None:
+        """Answer that it was not done and why."""
         if self.query is not None:
             with self.query as query:
                 query.reply_err(reason, encoding=TEXT)

@@ -397,9 +397,7 @@ class HliServer:
 
     def _write(self, message: zenoh.Sample | zenoh.Query, query: zenoh.Query | None) -> WriteRequest:
         path = self._path(message)
-        writer = message.attachment.to_string() if message.attachment else ""
-        member = path.removeprefix("hli/unit/")
-        write = MemberWrite(member, payload(message), is_text(message.encoding), writer)
+        write = MemberWrite(path.removeprefix("hli/unit/"), payload(message), is_text(message.encoding))
         return WriteRequest(**self._asked(path, query), write=write)
 
     def _on_state(self, query: zenoh.Query) -> None:

@@ -7,7 +7,7 @@ from hli_bench.base.errors import InputError
 from hli_bench.protocols.hli.image import Image, Value
 from hli_bench.protocols.hli.layout import Element
 from hli_bench.protocols.hli.packing import decoded
-from hli_bench.wire.hli import Commands
+from hli_bench.wire.hli import Commands, Write
 
 _BITS: Final = {
     "SGN08": 7,
@@ -32,41 +32,36 @@ class Refusal:
 
 @dataclass(frozen=True, slots=True)
 class MemberWrite:
-    """One member as a client put it: `payload` packed by the member's type, or as text (`TRUE`, `123`).
-
-    `writer` is the name of an attached PLC, or "" for anybody else.
-    """
+    """One member as a client put it: `payload` packed by the member's type, or as text (`TRUE`, `123`)."""
 
     path: str
     payload: bytes
     is_text: bool = False
-    writer: str = ""
 
 
 class Access:
-    """The door to an image: applies writes, remembers whose unit is whose, counts refusals."""
+    """The door to an image: applies writes, remembers whose unit is whose."""
 
-    __slots__ = ("_image", "_owner", "_units", "refused")
+    __slots__ = ("_image", "_owner", "_units")
 
     def __init__(self, image: Image) -> None:
         self._image = image
         self._owner: dict[str, str] = {}
         groups = image.layout.groups.items()
         self._units = {path for path, group in groups if "enable_w" in group.ids}
-        self.refused = 0
 
-    def apply(self, order: Commands | MemberWrite) -> list[Refusal]:
-        """Write what may be written; return what was refused."""
-        if isinstance(order, MemberWrite):
-            refusals = self._member(order)
-        else:
-            refusals = [
-                refusal
-                for write in order.writes
-                if (refusal := self._write(write.path, write.value, order.plc)) is not None
-            ]
-        self.refused += len(refusals)
-        return refusals
+    def apply(self, commands: Commands) -> list[Refusal]:
+        """Write what may be written; return what was refused. Commands of nobody ("" as PLC) own nothing."""
+        return [
+            refusal
+            for write in commands.writes
+            if (refusal := self._write(write.path, write.value, commands.plc)) is not None
+        ]
+
+    def write_of(self, put: MemberWrite) -> Write:
+        """Return what a client wants to write. Raises InputError for an unknown path and an unfit payload."""
+        element = self._image.layout.element(put.path)
+        return Write(element.path, decoded(element, put.payload, is_text=put.is_text))
 
     def owner(self, unit: str) -> str:
         """Return the name of the PLC that the unit belongs to, "" for none."""
@@ -85,15 +80,6 @@ class Access:
                 if element.member == "enable_w":
                     self._image.write(element.id, False)
         return owned
-
-    def _member(self, order: MemberWrite) -> list[Refusal]:
-        try:
-            element = self._image.layout.element(order.path)
-            value = decoded(element, order.payload, is_text=order.is_text)
-        except InputError as error:
-            return [Refusal(order.path, error.message, order.writer)]
-        refusal = self._write(element.path, value, order.writer)
-        return [refusal] if refusal else []
 
     def _write(self, path: str, value: Value, writer: str) -> Refusal | None:
         try:

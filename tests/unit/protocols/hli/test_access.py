@@ -1,7 +1,9 @@
+import re
 from typing import Any
 
 import pytest
 
+from hli_bench.base.errors import InputError
 from hli_bench.protocols.hli.access import Access, MemberWrite
 from hli_bench.protocols.hli.image import Image
 from hli_bench.protocols.hli.layout import Layout
@@ -47,7 +49,6 @@ def test_one_refused_write_does_not_stop_the_others_and_all_are_counted(image: A
         f"{UNIT}/state_r",
     ]
     assert read(image, f"{UNIT}/command_w") is True
-    assert access.refused == 2
 
 
 @pytest.mark.parametrize(
@@ -88,12 +89,11 @@ def test_a_unit_belongs_to_the_first_plc_that_wrote_it_until_it_leaves(image: An
 
 
 def test_a_client_without_a_name_owns_nothing_and_keeps_off_owned_units(image: Any, access: Any) -> None:
-    write = MemberWrite(f"{UNIT}/command_w", b"\x01")
-    assert access.apply(write) == []
+    commands = Commands("", 1, (access.write_of(MemberWrite(f"{UNIT}/command_w", b"\x01")),))
+    assert access.apply(commands) == []
     assert access.owner(UNIT) == ""
     access.apply(Commands("plc", 1, (Write(f"{UNIT}/enable_w", True),)))
-    assert [refusal.reason for refusal in access.apply(write)] == ["the unit belongs to PLC 'plc'"]
-    assert access.apply(MemberWrite(f"{UNIT}/command_w", b"\x00", writer="plc")) == []
+    assert [refusal.reason for refusal in access.apply(commands)] == ["the unit belongs to PLC 'plc'"]
 
 
 def test_a_refused_write_gives_no_ownership(access: Any) -> None:
@@ -116,7 +116,7 @@ def test_a_refused_write_gives_no_ownership(access: Any) -> None:
 def test_a_member_comes_packed_or_as_text(
     image: Any, access: Any, path: Any, payload: Any, is_text: Any, value: Any
 ) -> None:
-    assert access.apply(MemberWrite(path, payload, is_text)) == []
+    assert access.apply(Commands("", 1, (access.write_of(MemberWrite(path, payload, is_text)),))) == []
     assert read(image, path) == value
 
 
@@ -130,10 +130,9 @@ def test_a_member_comes_packed_or_as_text(
         (f"{TIME}/command_w", b"\xff", True, "no SGN64"),
     ],
 )
-def test_a_member_of_wrong_size_or_text_is_refused(
+def test_a_member_of_wrong_size_or_text_is_bad_input(
     image: Any, access: Any, path: Any, payload: Any, is_text: Any, reason: Any
 ) -> None:
-    (refusal,) = access.apply(MemberWrite(path, payload, is_text))
-    assert reason in refusal.reason
-    assert access.refused == 1
+    with pytest.raises(InputError, match=re.escape(reason)):
+        access.write_of(MemberWrite(path, payload, is_text))
     assert read(image, path) == 0

@@ -13,10 +13,9 @@ from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, Final
 
-from drives.cia402 import objects, telegram
+from drives.cia402 import telegram
 from drives.cia402.faults import Fault, error_register
 from drives.cia402.modes import is_supported
-from drives.cia402.objects import ObjectAddress
 from drives.cia402.states import (
     ENABLE_OPERATION,
     ControlBit,
@@ -30,7 +29,9 @@ from drives.cia402.touch_probe import ProbeSource, resolve_source
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import NS_PER_S, Ns
 from hli_bench.laws.rows import Cells
+from hli_bench.protocols.canopen import cia402_objects as objects
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
+from hli_bench.protocols.canopen.cia402_objects import ObjectAddress
 from hli_bench.protocols.canopen.datatypes import Value
 from hli_bench.protocols.canopen.device import Device
 from hli_bench.protocols.canopen.eds import ObjectDictionary, load
@@ -89,7 +90,7 @@ class FollowingErrorReaction(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class DriveOptions:
-    """What a machine folder may choose where drives differ. A window of 0 always means off (decided here)."""
+    """What a machine folder chooses where drives differ. A window of 0 always means off (decided here)."""
 
     following_error: FollowingErrorReaction = FollowingErrorReaction.FAULT
 
@@ -431,7 +432,5 @@ def create(name: str, node_id: int, eds_path: Path, row: Any, options: Mapping[s
 @lru_cache(maxsize=64)
 def _check(description: ObjectDictionary, eds_path: Path) -> None:
     """Raise InputError when an EDS lacks what the profile needs."""
-    for index, subindex in objects.ALL:
-        if (index, subindex) not in description:
-            message = f"a CiA 402 drive needs object 0x{index:04X}:{subindex:02X}"
-            raise InputError(message, file=str(eds_path))
+    if lacking := objects.lacking(description.entries):
+        raise InputError(f"a CiA 402 drive needs the objects {', '.join(lacking)}", file=str(eds_path))

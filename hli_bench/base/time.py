@@ -13,6 +13,9 @@ NS_PER_S: Final = 1_000_000_000
 DC_EPOCH: Final = datetime(2000, 1, 1, tzinfo=UTC)
 """Zero of DC time: 64-bit nanoseconds since 2000-01-01 00:00 UTC (EtherCAT distributed clocks)."""
 
+DC_END: Final = datetime(2200, 1, 1, tzinfo=UTC)
+"""A bench begins before this, so that its DC time fits into 64 bits for as long as it runs (decided here)."""
+
 
 def dc_ns(instant: datetime) -> Ns:
     """Return the DC time of `instant` (timezone aware) in ns since 2000-01-01 UTC."""

@@ -154,7 +154,7 @@ class Bench:
         first = self.engine.cycle
         self._standstill.begin(first)
         self._lost.clear()
-        last = FOREVER if limit_s is None else first + round(limit_s * NS_PER_S / self.config.cycle_ns)
+        last = FOREVER if limit_s is None else first + self._cycles(limit_s)
         if self._pace is not None:
             self._pace.resume()
             self._pace.take_part()
@@ -182,6 +182,10 @@ class Bench:
         if self._pace is not None:
             self._garbage.between_programs()
         return result
+
+    def _cycles(self, seconds: float) -> int:
+        """Return how many cycles it takes until so much machine time is over, at least one."""
+        return max(-(-round(seconds * NS_PER_S) // self.config.cycle_ns), 1)
 
     def _result(
         self,

@@ -3,8 +3,8 @@
 from typing import Any
 
 from hli_bench.base.errors import InputError
-from hli_bench.base.loading import module
 from hli_bench.bench.config import MachineConfig
+from hli_bench.bench.drive_models import drive_model
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.setup import AxisSetup, KernelSetup
 from hli_bench.laws.rows import Rows
@@ -38,12 +38,13 @@ def machine_side(config: MachineConfig, axis_rows: Rows) -> MachineSide:
     """Return drives, plant and terminals of a machine, all in one process; `axis_rows` hold the telegrams."""
     built = plant.build(config.plant, config.channels())
     drives: list[DriveNode] = []
-    # Any: a drive model is a module of the user's choice
     for axis in config.axes:
-        model: Any = module(axis.drive)
-        if not hasattr(model, "create"):
-            raise InputError(f"axis.{axis.name}.drive: {axis.drive!r} is no drive model, it has no create()")
-        drives.append(model.create(axis.name, axis.node_id, built.rows.servo[axis.index], {}))
+        try:
+            model = drive_model(axis.drive)
+        except InputError as error:
+            raise InputError(f"axis.{axis.name}.drive: {error}") from error
+        options = {"following_error": axis.following_error}
+        drives.append(model.create(axis.name, axis.node_id, built.rows.servo[axis.index], options))
     return MachineSide(
         rows=built.rows,
         axis=axis_rows,

@@ -35,6 +35,7 @@ class AxisConfig:
     number: AxisNumber
     node_id: NodeId
     drive: str
+    following_error: str
     start_mm: float
     params: AxisParams
 

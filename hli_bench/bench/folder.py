@@ -309,6 +309,7 @@ class _Loader:
             number=AxisNumber(params.kopf.achs_nr),
             node_id=NodeId(params.kopf.achs_nr if node is None else node),
             drive=self._value(f"axis.{name}.drive"),
+            following_error=self._value(f"axis.{name}.following_error"),
             start_mm=self._value(f"axis.{name}.start_mm"),
             params=params,
         )
@@ -501,7 +502,11 @@ class _Loader:
                 self._fail(self._entry(table), f"{table}.kind: is missing")
                 continue
             if self._value(f"{table}.when"):
-                raise NotEmulated(f"{table}.when: faults at a condition")
+                self.refused.append(f"{table}.when: faults at a condition")
+            value = self._value(f"{table}.value")
+            if kind == "probe_stuck" and value not in (0.0, 1.0):
+                given = self.given[f"{table}.value"]
+                self._fail(given, f"{table}.value: {value:g} is no level of a stuck probe, 0 or 1 expected")
             at_ns = Ns(round(self._value(f"{table}.at_ms") * NS_PER_MS))
             for_ms = self._value(f"{table}.for_ms")
             faults.append(
@@ -510,7 +515,7 @@ class _Loader:
                     target=self._value(f"{table}.target") or (PROBE if kind == "probe_stuck" else ""),
                     at_ns=at_ns,
                     until_ns=None if for_ms is None else Ns(at_ns + round(for_ms * NS_PER_MS)),
-                    value=self._value(f"{table}.value"),
+                    value=value,
                 )
             )
         return tuple(faults)

@@ -7,7 +7,7 @@ from datetime import UTC, date, datetime
 from enum import StrEnum
 from typing import Final
 
-from hli_bench.base.time import DC_EPOCH
+from hli_bench.base.time import DC_END, DC_EPOCH
 from hli_bench.terminals.settings import CONTINUOUS, SINGLE_EVENT
 
 FAULTS: Final = (
@@ -35,7 +35,7 @@ class Kind(StrEnum):
     INTEGER = "integer"
     NUMBER = "number"
     TEXT = "text"
-    INSTANT = "instant (ISO 8601)"
+    INSTANT = "instant (ISO 8601), 2000-01-01 to 2199-12-31"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +72,7 @@ class Key:
             raise ValueError(raw)
         if isinstance(value, int | float) and not isinstance(value, bool):
             self._check_number(value)
-        if isinstance(value, datetime) and value < DC_EPOCH:
+        if isinstance(value, datetime) and not DC_EPOCH <= value < DC_END:
             raise ValueError(raw)
         return value
 
@@ -132,7 +132,7 @@ GENERAL: Final = (
         path="dc_epoch",
         kind=Kind.INSTANT,
         default=datetime(2026, 1, 1, tzinfo=UTC),
-        doc="DC time at bench start, not before 2000-01-01",
+        doc="DC time at bench start",
     ),
     _integer("seed", 0, "seed of everything random", 0, 2**32 - 1),
     _text("channel.list", "", "channel list file of the folder"),
@@ -140,6 +140,12 @@ GENERAL: Final = (
 AXIS: Final = (
     _text("axis.<AXIS>.list", "", "axis list file of the folder"),
     _text("axis.<AXIS>.drive", "drives.models.servo402", "drive model, a module path"),
+    _text(
+        "axis.<AXIS>.following_error",
+        "fault",
+        "what the drive does when the following error leaves the window 6065 for longer than 6066, beside bit 13",
+        ("fault", "status"),
+    ),
     _integer("axis.<AXIS>.node_id", None, "CANopen node id; default: the axis number", 1, 127),
     _number("axis.<AXIS>.start_mm", 0.0, "where the axis stands at the start, mm or degrees"),
     _text("axis.<AXIS>.probe_input_1", "probe", "signal at touch probe input 1 of the drive"),
@@ -221,7 +227,9 @@ NODES: Final = (
     _number("fault[<N>].at_ms", 0.0, "bench time at which it begins, ms", low=0.0),
     _number("fault[<N>].for_ms", None, "how long it lasts, ms; default: to the end", above=0.0),
     _text("fault[<N>].when", "", "a condition instead of a time"),
-    _number("fault[<N>].value", 0.0, "level of a stuck probe, ns of a clock skew, rate of a frame loss"),
+    _number(
+        "fault[<N>].value", 0.0, "level of a stuck probe (0 or 1), ns of a clock skew, rate of a frame loss"
+    ),
 )
 KEYS: Final = (*GENERAL, *AXIS, *PLANT, *DRIVE_TRAIN, *NODES)
 LIST_KEYS: Final = (

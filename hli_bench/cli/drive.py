@@ -3,14 +3,16 @@
 import argparse
 import pkgutil
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from hli_bench.base.errors import InputError
-from hli_bench.base.loading import data_file, module
+from hli_bench.base.loading import module
+from hli_bench.bench.drive_models import eds_of
 from hli_bench.cli import tables
 from hli_bench.cli.options import Commands
+from hli_bench.protocols.canopen.cia402_objects import lacking
 from hli_bench.protocols.canopen.eds import Entry, ObjectDictionary, load
 
 MODELS: Final = "drives.models"
@@ -40,23 +42,16 @@ def add(commands: Commands) -> None:
 
 def show_model(arguments: argparse.Namespace) -> int:
     """Print the object dictionary. Raises InputError for an unknown model."""
-    model = arguments.model
+    name = arguments.model if "." in arguments.model else f"{MODELS}.{arguments.model}"
     try:
-        path = eds_of(model if "." in model else f"{MODELS}.{model}")
+        path = eds_of(name)
     except InputError as error:
         raise InputError(f"{error}; supplied models: {', '.join(supplied_models())}") from error
+    if path is None:
+        raise InputError(f"{name} does not say what its EDS is: MODEL.eds expected")
     for line in tables.lines([HEADS, *map(row, load(path))]):
         print(line)
     return 0
-
-
-def eds_of(name: str) -> Path:
-    """Return the EDS of a drive model by its module path. Raises InputError."""
-    loaded: Any = module(name)
-    described = getattr(loaded, "MODEL", None)
-    if not hasattr(described, "eds") or not hasattr(loaded, "create"):
-        raise InputError(f"{name} is no drive model: expected MODEL, with the name of its EDS, and create()")
-    return data_file("eds", loaded.MODEL.eds)
 
 
 def supplied_models() -> list[str]:
@@ -95,10 +90,7 @@ def check_files(arguments: argparse.Namespace) -> int:
 def check_file(path: Path) -> int:
     """Print what a file holds or what is wrong with it."""
     try:
-        described = load(path)
-        lacking = list(missing_objects(described))
-        if lacking:
-            raise InputError(f"a CiA 402 drive needs the objects {', '.join(lacking)}", file=str(path))
+        described = described_by(path)
     except InputError as error:
         print(error, file=sys.stderr)
         return error.exit_status
@@ -107,18 +99,17 @@ def check_file(path: Path) -> int:
     return 0
 
 
+def described_by(path: Path) -> ObjectDictionary:
+    """Return what an EDS describes. Raises InputError, also for a CiA 402 drive that lacks objects it needs."""
+    described = load(path)
+    if is_402(described) and (missing := lacking(described.entries)):
+        raise InputError(f"a CiA 402 drive needs the objects {', '.join(missing)}", file=str(path))
+    return described
+
+
 def is_402(described: ObjectDictionary) -> bool:
     """Tell whether the device type (0x1000, low word) names the drive profile."""
     if DEVICE_TYPE not in described:
         return False
     number = described[DEVICE_TYPE].default
     return isinstance(number, int) and number & 0xFFFF == CIA402
-
-
-def missing_objects(described: ObjectDictionary) -> Iterator[str]:
-    """Yield the objects that a CiA 402 drive needs and this dictionary lacks, as `6041:00`."""
-    if not is_402(described):
-        return
-    for index, subindex in module("drives.cia402.objects").ALL:
-        if (index, subindex) not in described:
-            yield f"{index:04X}:{subindex:02X}"

@@ -3,10 +3,11 @@
 import argparse
 import shutil
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from hli_bench.base.errors import InputError, NotEmulated
-from hli_bench.cli.drive import eds_of
+from hli_bench.bench.drive_models import eds_of
+from hli_bench.cli.drive import described_by
 from hli_bench.cli.options import Commands, machine_name
 
 if TYPE_CHECKING:
@@ -83,14 +84,14 @@ def check_machine(arguments: argparse.Namespace) -> int:
 def check_named(config: "MachineConfig") -> None:
     """Check drive models with their EDS files, and PLC scripts. Raises InputError naming whose they are."""
     from hli_bench.plc import load as load_script
-    from hli_bench.protocols.canopen.eds import load as load_eds
 
-    seen: dict[str, Any] = {}
-    for axis in config.axes:
-        if axis.drive not in seen:
-            try:
-                seen[axis.drive] = load_eds(eds_of(axis.drive))
-            except InputError as error:
-                raise InputError(f"axis.{axis.name}.drive: {error}") from error
+    users = {axis.drive: axis.name for axis in reversed(config.axes)}
+    for drive, axis in users.items():
+        try:
+            eds = eds_of(drive)
+            if eds is not None:
+                described_by(eds)
+        except InputError as error:
+            raise InputError(f"axis.{axis}.drive: {error}") from error
     for plc in config.plcs:
         load_script(plc.script)

@@ -9,6 +9,7 @@ import io
 import os
 import signal
 import sys
+import traceback
 from collections.abc import Sequence
 from typing import Any, Final, NoReturn
 
@@ -35,9 +36,11 @@ INTERRUPTED: Final = 130
 """Exit status after Ctrl-C, as a shell reports it."""
 PIPE_CLOSED: Final = 141
 """Exit status when nobody reads standard output any more."""
+FAULT_OF_OURS: Final = 70
+"""Exit status after an error that nobody has foreseen (EX_SOFTWARE)."""
 EPILOG: Final = (
     "exit status: 0 done (run: M02 or M30), 1 stopped by an error of the CNC, 2 bad input, "
-    "3 this computer cannot serve it, 130 Ctrl-C"
+    "3 this computer cannot serve it, 70 a fault of the bench itself, 130 Ctrl-C"
 )
 
 
@@ -83,6 +86,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         # What is still buffered must not fail again when the interpreter flushes it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return PIPE_CLOSED
+    except Exception:
+        # A fault of ours must not look like an error of the CNC, which is 1.
+        traceback.print_exc()
+        return FAULT_OF_OURS
     return status
 
 

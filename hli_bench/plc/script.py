@@ -35,7 +35,8 @@ def load(path: Path) -> Any:
     except InputError:
         raise
     except SyntaxError as error:
-        raise InputError(f"syntax: {error.msg}", str(path), error.lineno or 0, error.offset or 0) from error
+        place = (error.filename or str(path), error.lineno or 0, error.offset or 0)
+        raise InputError(f"syntax: {error.msg}", *place) from error
     except (Exception, SystemExit) as error:
         raise script_error(error, path) from error
     found = {

@@ -27,6 +27,7 @@ class CanBus:
             raise EnvironmentLacks(
                 f"no CAN interface {interface} ({error}); `hli-bench doctor` says what this computer offers"
             ) from error
+        self._interface = interface
 
     def __enter__(self) -> Self:
         return self
@@ -35,28 +36,40 @@ class CanBus:
         self.close()
 
     def send(self, frame: CanFrame) -> None:
-        """Put one frame on the bus; wait while the interface's queue is full."""
+        """Put one frame on the bus; wait while the interface's queue is full. Raises EnvironmentLacks."""
         message = can.Message(
             arbitration_id=frame.cob_id,
             data=frame.data,
             is_extended_id=False,
             is_remote_frame=frame.remote,
         )
-        self._bus.send(message, timeout=ANSWER_S)
+        try:
+            self._bus.send(message, timeout=ANSWER_S)
+        except (OSError, can.CanError) as error:
+            raise self._failure(error) from error
 
     def receive(self, timeout_s: float = ANSWER_S) -> CanFrame | None:
-        """Return the next 11-bit frame, None when none comes in time."""
+        """Return the next 11-bit frame, None when none comes in time. Raises EnvironmentLacks."""
         deadline = time.monotonic() + timeout_s
         while (rest := deadline - time.monotonic()) > 0:
-            message = self._bus.recv(rest)
+            message = self._next(rest)
             if message is not None and not message.is_extended_id and not message.is_error_frame:
                 return CanFrame(message.arbitration_id, bytes(message.data), message.is_remote_frame)
         return None
 
     def clear(self) -> None:
         """Forget the frames that wait."""
-        while self._bus.recv(0) is not None:
+        while self._next(0.0) is not None:
             pass
+
+    def _next(self, timeout_s: float) -> Any:
+        try:
+            return self._bus.recv(timeout_s)
+        except (OSError, can.CanError) as error:
+            raise self._failure(error) from error
+
+    def _failure(self, error: Exception) -> EnvironmentLacks:
+        return EnvironmentLacks(f"CAN interface {self._interface}: {error}")
 
     def close(self) -> None:
         """Leave the bus."""

@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator, Mapping
 from queue import Empty, SimpleQueue
 from typing import Any, Final, Self
+from urllib.parse import quote
 
 import zenoh
 
@@ -109,7 +110,7 @@ class HliClient:
 
     def run(self, text: str, name: str = "", timeout_s: float = PROGRAM_S) -> dict[str, Any]:
         """Run an NC program and return its result. Raises InputError when the bench refuses it."""
-        selector = f"cnc/run?name={name}" if name else "cnc/run"
+        selector = f"cnc/run?name={quote(name)}" if name else "cnc/run"
         result: dict[str, Any] = json.loads(self._one(selector, text, timeout_s=timeout_s))
         return result
 

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from queue import Empty, SimpleQueue
 from time import monotonic
 from typing import Any, Final, Self
+from urllib.parse import unquote
 
 import zenoh
 
@@ -410,7 +411,7 @@ class HliServer:
         self._requests.append(Reset(**self._asked("cnc/reset")))
 
     def _on_run(self, query: zenoh.Query) -> None:
-        text, name = payload(query).decode("utf-8", "replace"), query.parameters.get("name") or ""
+        text, name = payload(query).decode("utf-8", "replace"), unquote(query.parameters.get("name") or "")
         run = RunProgram(**self._asked("cnc/run", query), text=text, name=name)
         if text.strip():
             self._requests.append(run)

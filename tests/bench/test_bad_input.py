@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from hli_bench.base.loading import data_file
 from hli_bench.cli.main import main
 from hli_bench.cli.options import endpoint
 from hli_bench.shells.zenoh_client import HliClient
@@ -136,6 +137,45 @@ def test_a_missing_eds_is_named(command: Command, tmp_path: Path, monkeypatch: p
     assert (status, said) == (2, "no 'nowhere.eds' in eds/\n")
     status, _, said = command("machine", "check", "demo", "--set", drive)
     assert (status, said) == (2, "axis.Z.drive: no 'nowhere.eds' in eds/\n")
+
+
+def test_a_drive_model_is_the_same_to_run_and_to_machine_check(
+    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    eds = data_file("eds", "servo402.eds").read_text(encoding="latin-1")
+    (tmp_path / "poor.eds").write_text(
+        eds.replace("[60B9]", "[2FFF]").replace("=0x60B9", "=0x2FFF"), "latin-1"
+    )
+    (tmp_path / "no_drive.py").write_text("")
+    (tmp_path / "poor_drive.py").write_text(
+        DRIVE_WITHOUT_EDS.replace("nowhere.eds", str(tmp_path / "poor.eds"))
+    )
+    (tmp_path / "plain_drive.py").write_text("from drives.models.servo402 import create\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    empty = program(tmp_path, "N10 M30")
+    for words in (("run", empty), ("machine", "check", "demo")):
+        status, _, said = command(*words, "--set", "axis.Z.drive=no_drive")
+        assert (status, said) == (2, "axis.Z.drive: 'no_drive' is no drive model, it has no create()\n")
+        status, _, said = command(*words, "--set", "axis.Z.drive=poor_drive")
+        assert (status, said.endswith("poor.eds: a CiA 402 drive needs the objects 60B9:00\n")) == (2, True)
+        assert command(*words, "--set", "axis.Z.drive=plain_drive")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        (["fault.0.value=2"], "fault[0].value: 2 is no level of a stuck probe, 0 or 1 expected"),
+        (["fault.0.value=-1"], "fault[0].value: -1 is no level of a stuck probe, 0 or 1 expected"),
+        (["fault.0.when=x", "axis.Z.start=3"], "axis.Z.start: "),
+        (["fault.0.when=x"], "NotEmulated: fault[0].when: faults at a condition"),
+        (["dc_epoch=2400-01-01"], "dc_epoch: "),
+    ],
+)
+def test_values_that_no_bench_can_take(command: Command, settings: list[str], message: str) -> None:
+    options = [word for one in ("fault.0.kind=probe_stuck", *settings) for word in ("--set", one)]
+    status, _, said = command("machine", "check", "demo", *options)
+    assert status == 2
+    assert message in said
 
 
 def test_an_axis_that_does_not_measure_stops_the_program(command: Command, tmp_path: Path) -> None:

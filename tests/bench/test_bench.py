@@ -27,6 +27,20 @@ def test_a_limit_of_machine_time_aborts_a_program() -> None:
         assert bench.run("%b\nN10 G01 X0 F600\nM30\n").completed
 
 
+@pytest.mark.parametrize(("limit_s", "cycles"), [(0.0003, 1), (0.0014, 2), (0.3, 300), (0.5004, 501)])
+def test_a_limit_is_over_with_the_cycle_in_which_it_is_reached(limit_s: float, cycles: int) -> None:
+    with Bench("demo", plc=[]) as bench:
+        assert bench.run("N10 G01 X100 F60\nM30\n", limit_s=limit_s).cycles == cycles
+
+
+@pytest.mark.parametrize(("reaction", "errors"), [("fault", [70020, 70222]), ("status", [70020])])
+def test_a_machine_chooses_what_its_drives_do_at_a_following_error(reaction: str, errors: list[int]) -> None:
+    settings = {"axis.Z.following_error": reaction, "plant.stop.Z.at_mm": 290, "plant.stop.Z.side": "below"}
+    with Bench("demo", settings, plc=[]) as bench:
+        result = bench.run("N10 G90 G01 Z250 F6000\nN20 M30\n")
+    assert [error.id for error in result.errors] == errors
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

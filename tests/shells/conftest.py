@@ -125,6 +125,12 @@ def until(condition: Callable[[], Any]) -> bool:
 Start = Callable[..., Command]
 
 
+@pytest.fixture(name="until")
+def given_until() -> Callable[[Callable[[], Any]], bool]:
+    """Return what waits until a condition on other processes holds."""
+    return until
+
+
 @contextmanager
 def starter() -> Iterator[Start]:
     """Give what starts `hli-bench` (or another program); kill what of it is left over in the end."""

@@ -326,8 +326,8 @@ def test_the_client_is_told_why_a_write_is_refused(
 
 
 def test_program_state_reset_and_faults_reach_the_bench(bench: SmallBench, elsewhere: Any) -> None:
-    result = ask(bench, elsewhere, with_client, "run", "N10 M30", "a.nc")
-    assert result == {"status": "completed", "program": "a.nc", "text": "N10 M30"}
+    result = ask(bench, elsewhere, with_client, "run", "N10 M30", "a;b &c=ü%.nc")
+    assert result == {"status": "completed", "program": "a;b &c=ü%.nc", "text": "N10 M30"}
     assert ask(bench, elsewhere, with_client, "state") == {"mode": 2}
     assert ask(bench, elsewhere, with_client, "reset") == ""
     assert ask(bench, elsewhere, with_client, "fault", {"inject": "probe_stuck"}) == {"inject": "probe_stuck"}

@@ -7,7 +7,10 @@ from collections.abc import Iterator
 import can
 import pytest
 
+from hli_bench.base.errors import EnvironmentLacks
 from hli_bench.shells import environment
+from hli_bench.shells.can_bus import CanBus
+from hli_bench.wire.can import CanFrame
 
 PATIENCE_S = 10.0
 
@@ -66,6 +69,21 @@ def test_a_remote_frame_stays_one(bus: can.BusABC) -> None:
     with can.Bus("vcan0", interface="socketcan") as listener:
         bus.send(can.Message(arbitration_id=0x701, is_remote_frame=True, is_extended_id=False))
         assert _answer(listener).is_remote_frame
+
+
+def test_an_interface_that_is_down_is_named() -> None:
+    frame = CanFrame(0x80, b"")
+    with CanBus("vcan0") as bus:
+        bus.send(frame)
+        subprocess.run(["ip", "link", "set", "vcan0", "down"], check=True)
+        try:
+            with pytest.raises(EnvironmentLacks, match="CAN interface vcan0: "):
+                bus.send(frame)
+            with pytest.raises(EnvironmentLacks, match="CAN interface vcan0: "):
+                bus.receive()
+        finally:
+            subprocess.run(["ip", "link", "set", "vcan0", "up"], check=True)
+        bus.send(frame)
 
 
 def test_the_doctor_finds_what_is_here() -> None:

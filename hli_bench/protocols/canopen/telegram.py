@@ -10,9 +10,9 @@ from functools import cache
 from struct import Struct
 from typing import Final, NamedTuple
 
+from hli_bench.protocols.canopen.cia402_objects import LATCHES
+
 BITS: Final = {"H": 16, "h": 16, "i": 32, "I": 32}
-_LATCHES: Final = (0x60BA, 0x60BB, 0x60BC, 0x60BD)
-"""Touch probe 1 positive and negative edge, touch probe 2 positive and negative edge."""
 
 
 class Number(NamedTuple):
@@ -50,7 +50,7 @@ RPDOS: Final = (
 @cache
 def tpdos(probing_input: int = 0) -> tuple[Telegram, ...]:
     """Return the TPDOs that carry the latches of a probing input (0 or 1); 0 is the default map."""
-    positive, negative = _LATCHES[2 * probing_input : 2 * probing_input + 2]
+    positive, negative = (one.object_index for one in LATCHES[2 * probing_input : 2 * probing_input + 2])
     return (
         Telegram(0x180, (Number("statusword", "H", 0x6041), Number("position", "i", 0x6064))),
         Telegram(0x280, (Number("probe_status", "H", 0x60B9), Number("latch", "i", positive, 0))),

@@ -28,7 +28,7 @@ def test_a_model_shows_its_object_dictionary(capsys: pytest.CaptureFixture[str],
         ("servo999", "no module 'drives.models.servo999' on the Python path"),
         (
             "json.decoder",
-            "json.decoder is no drive model: expected MODEL, with the name of its EDS, and create()",
+            "'json.decoder' is no drive model, it has no create()",
         ),
     ],
 )

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from hli_bench.cli import doctor
 from hli_bench.cli.main import main, parser
 
 COMMANDS = [
@@ -74,6 +75,17 @@ def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) 
         main(["--version"])
     assert ended.value.code == 0
     assert capsys.readouterr().out == f"hli-bench {project['version']}\n"
+
+
+def test_a_fault_of_the_bench_is_no_error_of_the_cnc(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(_: object) -> int:
+        raise ZeroDivisionError("nobody has foreseen this")
+
+    monkeypatch.setattr(doctor, "execute", broken)
+    assert main(["doctor"]) == 70
+    assert "ZeroDivisionError: nobody has foreseen this" in capsys.readouterr().err
 
 
 def test_a_command_is_needed() -> None:

@@ -45,7 +45,9 @@ class DriveBus(canopen.Network):
 
 @pytest.fixture
 def row() -> Any:
-    return np.zeros(1, SERVO)[0]
+    row = np.zeros(1, SERVO)[0]
+    row["rated_torque"], row["peak_permille"], row["increments_per_turn"] = 15.0, 3000, 1_048_576
+    return row
 
 
 @pytest.fixture

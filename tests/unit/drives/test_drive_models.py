@@ -14,6 +14,7 @@ import drives.models
 from drives.cia402.states import State
 from hli_bench.base import loading
 from hli_bench.base.time import Ns
+from hli_bench.bench.schema import DRIVE_TRAIN
 from hli_bench.laws.rows import SERVO
 from hli_bench.protocols.canopen.device import Device
 from hli_bench.protocols.canopen.eds import load
@@ -64,12 +65,12 @@ class TestModel:
         row = np.zeros(1, SERVO)[0]
         return model.create("X", 1, row, {}), row
 
-    def test_ratings_are_those_of_its_eds(self, model: ModuleType) -> None:
+    def test_its_eds_says_what_a_machine_folder_says_by_default(self, model: ModuleType) -> None:
         description = load(loading.data_file("eds", model.MODEL.eds))
-        assert description[0x6076, 0].default == model.MODEL.rated_torque_mnm
-        assert description[0x6075, 0].default == model.MODEL.rated_current_ma
-        assert description[0x6072, 0].default == model.MODEL.peak_torque_permille
-        assert description[0x608F, 1].default == model.MODEL.encoder_increments
+        defaults: dict[str, Any] = {key.path.rpartition(".")[2]: key.default for key in DRIVE_TRAIN}
+        assert description[0x6076, 0].default == 1000 * defaults["rated_torque_nm"]
+        assert description[0x6072, 0].default == defaults["peak_permille"]
+        assert description[0x608F, 1].default == defaults["increments_per_turn"]
         assert description[0x1008, 0].default == model.MODEL.name
 
     def test_state_walk_and_telegram(self, model: ModuleType) -> None:

@@ -56,6 +56,14 @@ def test_a_script_that_cannot_be_loaded_is_told_with_its_line(
     assert (error.value.file, error.value.line) == (str(path), line)
 
 
+def test_a_syntax_error_in_what_a_script_imports_is_told_where_it_is(tmp_path: Any) -> None:
+    (tmp_path / "broken_helper.py").write_text("x = 1\n\nif x\n")
+    path = write(tmp_path, "import broken_helper\n")
+    with pytest.raises(InputError, match="syntax: ") as error:
+        load(path)
+    assert (error.value.file, error.value.line) == (str(tmp_path / "broken_helper.py"), 3)
+
+
 def test_a_script_that_was_changed_at_once_is_taken_as_it_is_now(tmp_path: Any) -> None:
     """Python's byte code beside a file passes for fresh when date and size are the same."""
     path = tmp_path / "quick.py"

@@ -1,5 +1,6 @@
-"""Addresses of CiA 402 objects."""
+"""Addresses of the CiA 402 objects that the bench uses, and what of them a dictionary lacks."""
 
+from collections.abc import Container
 from typing import Final, NamedTuple
 
 
@@ -17,7 +18,6 @@ STATUSWORD: Final = ObjectAddress(0x6041)
 QUICK_STOP_OPTION: Final = ObjectAddress(0x605A)
 SHUTDOWN_OPTION: Final = ObjectAddress(0x605B)
 DISABLE_OPERATION_OPTION: Final = ObjectAddress(0x605C)
-HALT_OPTION: Final = ObjectAddress(0x605D)
 FAULT_REACTION_OPTION: Final = ObjectAddress(0x605E)
 MODE: Final = ObjectAddress(0x6060)
 MODE_DISPLAY: Final = ObjectAddress(0x6061)
@@ -28,12 +28,10 @@ FOLLOWING_WINDOW: Final = ObjectAddress(0x6065)
 FOLLOWING_TIMEOUT: Final = ObjectAddress(0x6066)
 VELOCITY_ACTUAL: Final = ObjectAddress(0x606C)
 MAX_TORQUE: Final = ObjectAddress(0x6072)
-RATED_CURRENT: Final = ObjectAddress(0x6075)
 RATED_TORQUE: Final = ObjectAddress(0x6076)
 TORQUE_ACTUAL: Final = ObjectAddress(0x6077)
 TARGET_POSITION: Final = ObjectAddress(0x607A)
 ENCODER_INCREMENTS: Final = ObjectAddress(0x608F, 1)
-TORQUE_OFFSET: Final = ObjectAddress(0x60B2)
 PROBE_FUNCTION: Final = ObjectAddress(0x60B8)
 PROBE_STATUS: Final = ObjectAddress(0x60B9)
 LATCHES: Final = tuple(ObjectAddress(index) for index in (0x60BA, 0x60BB, 0x60BC, 0x60BD))
@@ -48,10 +46,17 @@ POSITION_DEMAND_INTERNAL: Final = ObjectAddress(0x60FC)
 DIGITAL_INPUTS: Final = ObjectAddress(0x60FD)
 SUPPORTED_MODES: Final = ObjectAddress(0x6502)
 
-ALL: Final = (
+NEEDED: Final = (
     *(address for address in tuple(globals().values()) if isinstance(address, ObjectAddress)),
     *LATCHES,
     *PROBE_SOURCES,
     *LATCH_TIMES,
 )
 """Every object of this module: what the EDS of a drive must have."""
+
+
+def lacking(entries: Container[tuple[int, int]]) -> list[str]:
+    """Return the objects that a drive needs and a dictionary with these entries lacks, as `6041:00`."""
+    return [
+        f"{index:04X}:{subindex:02X}" for index, subindex in NEEDED if (index, subindex) not in description
+    ]

@@ -57,6 +57,4 @@ NEEDED: Final = (
 
 def lacking(entries: Container[tuple[int, int]]) -> list[str]:
     """Return the objects that a drive needs and a dictionary with these entries lacks, as `6041:00`."""
-    return [
-        f"{index:04X}:{subindex:02X}" for index, subindex in NEEDED if (index, subindex) not in description
-    ]
+    return [f"{index:04X}:{subindex:02X}" for index, subindex in NEEDED if (index, subindex) not in entries]

@@ -37,11 +37,20 @@ P = TypeVar("P")
 def machine_folder(machine: str | Path) -> Path:
     """Return the folder of a machine given by name or path. Raises InputError when there is none."""
     folder = Path(machine)
-    if not (folder / MACHINE_FILE).is_file():
-        if isinstance(machine, Path) or folder.is_dir() or len(folder.parts) != 1:
-            raise InputError(f"no {MACHINE_FILE} there", file=str(folder))
-        folder = data_file("machines", str(machine))
-    return folder
+    if (folder / MACHINE_FILE).is_file():
+        return folder
+    nothing_there = InputError(f"no {MACHINE_FILE} there", file=str(folder))
+    if isinstance(machine, Path) or len(folder.parts) != 1:
+        raise nothing_there
+    try:
+        shipped = data_file("machines", machine)
+    except InputError:
+        if folder.is_dir():
+            raise nothing_there from None
+        raise
+    if not (shipped / MACHINE_FILE).is_file():
+        raise nothing_there
+    return shipped
 
 
 def load(machine: str | Path, overrides: Mapping[str, object] | None = None) -> MachineConfig:

@@ -355,7 +355,7 @@ class Channel:
         return {} if self._decoder is None else self._decoder.variables(self._state())
 
     def _take(self, run: measurement.Run) -> None:
-        """Keep what a measuring run delivered; axes without a new value keep their old one (M-067)."""
+        """Keep what a measuring run delivered; axes without a new value keep their old one."""
         for axis in run.block.axes:
             self._latched[axis] = run.before_target.get(axis, False)
         self._measured |= {axis: mm(value.acs_tenth_um) for axis, value in run.values.items()}

@@ -24,7 +24,7 @@ LOG_CYCLES: Final = 1024
 SEGMENTS: Final = 64
 """Depth of the ring of prepared path segments."""
 EDGES: Final = 256
-"""Edges that one stride can report; a stride ends when the ring is nearly full."""
+"""Edges that one stride can report; a stride ends when the ring is half full."""
 SUB_STEPS: Final = 160
 """Greatest number of sub-steps in a cycle."""
 NOISE: Final = 1024
@@ -66,7 +66,7 @@ AXIS: Final = np.dtype(
         ("increments_per_unit", "f8"),  # increments per 0.1 um, negative when the drive counts the other way
         ("reference", "i8"),  # increments at ACS position 0
         ("actual", "f8"),  # ACS, 0.1 um
-        ("lag", "f8"),  # set point minus actual position, 0.1 um
+        ("lag", "f8"),  # set point of two cycles before minus actual position, 0.1 um
         ("mode", "u1"),
         ("released", "u1"),  # feed released: without it the axis, and a path that moves it, brakes
         ("jog_velocity", "f8"),  # wanted velocity of a JOG, signed, 0.1 um/s

@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Final
 
 from hli_bench.laws import cache
+from hli_bench.shells.realtime import PRIORITY
 
 LEAST_PYTHON: Final = (3, 11)
-LEAST_LOCKED_BYTES: Final = 64 * 1024 * 1024
-"""Locked memory a paced bench asks for, so that no page fault delays a cycle (decided here)."""
+LEAST_LOCKED_BYTES: Final = 1 << 30
+"""What a paced bench may lock, so that no page fault delays a cycle; `demo` has 0.4 GB of addresses (decided here)."""
 
 PORTS: Final[Mapping[int, str]] = {7447: "Zenoh", 29536: "socketcand"}
 """The loopback ports a bench serves by default, and for what."""
@@ -115,11 +116,11 @@ def real_time_priority() -> Finding:
         return Finding("real-time", False, f"{sys.platform} has no SCHED_FIFO", advice)
     policy, parameter = os.sched_getscheduler(0), os.sched_getparam(0)
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
     except OSError as error:
         return Finding("real-time", False, f"SCHED_FIFO: {_reason(error)}", advice)
     os.sched_setscheduler(0, policy, parameter)
-    return Finding("real-time", True, "SCHED_FIFO allowed", advice)
+    return Finding("real-time", True, f"SCHED_FIFO with priority {PRIORITY} allowed", advice)
 
 
 def locked_memory() -> Finding:

@@ -62,18 +62,29 @@ def settle() -> None:
     gc.freeze()
 
 
+class _Frozen:
+    """How many paced benches of this process keep the collector still, and whether it ran before the first."""
+
+    benches = 0
+    was_enabled = True
+
+
 @contextmanager
 def frozen_garbage() -> Iterator[None]:
-    """The collector never looks at what is there now, and does not start by itself."""
-    was_enabled = gc.isenabled()
+    """The collector never looks at what is there now, and does not start by itself, while any bench wants it so."""
+    if not _Frozen.benches:
+        _Frozen.was_enabled = gc.isenabled()
+    _Frozen.benches += 1
     settle()
     gc.disable()
     try:
         yield
     finally:
-        gc.unfreeze()
-        if was_enabled:
-            gc.enable()
+        _Frozen.benches -= 1
+        if not _Frozen.benches:
+            gc.unfreeze()
+            if _Frozen.was_enabled:
+                gc.enable()
 
 
 class Calm:

@@ -208,6 +208,7 @@ class Handover:
             raise self._failure
 
     def _finish(self, worker: Worker) -> None:
+        self._outbox.send_all()
         self._hand_over(self._buffer.count)
         self._put(0)
         self._outbox.send_all()

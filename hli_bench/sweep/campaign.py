@@ -10,6 +10,8 @@ from typing import Any, Final, cast
 
 from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.loading import data_file
+from hli_bench.bench.config import MachineConfig
+from hli_bench.bench.drive_models import drive_model
 from hli_bench.bench.folder import load, machine_folder
 from hli_bench.bench.sources import NUMBERED, SET, line_numbers, line_of, toml_tree
 from hli_bench.sweep.draws import FORMS, Choice, Distribution, Integers, Plain, distribution, share
@@ -364,6 +366,17 @@ def _with_neighbours(scripts: Collection[Path]) -> set[Path]:
     return {*scripts, *(path for script in scripts for path in script.parent.glob("*.py") if path.is_file())}
 
 
+def _drive_files(campaign: Campaign, machine: MachineConfig) -> set[Path]:
+    """Return the files of the drive models that the runs of a campaign may name. Raises InputError."""
+    names = {axis.drive for axis in machine.axes}
+    chosen = {key: (value,) for key, value in campaign.fixed.items()}
+    drawn = {key: of.values for key, of in campaign.random.items() if isinstance(of, Choice)}
+    for key, values in {**chosen, **campaign.grid, **drawn}.items():
+        if key.startswith("axis.") and key.endswith(".drive"):
+            names.update(map(str, values))
+    return {Path(drive_model(name).__file__) for name in names}
+
+
 def _digests(campaign: Campaign, scripts: Collection[Path]) -> dict[str, str]:
     """Return a digest of each part of a campaign and of the files that it names; `scripts` of the machine."""
     job = campaign.job
@@ -373,6 +386,7 @@ def _digests(campaign: Campaign, scripts: Collection[Path]) -> dict[str, str]:
         "program": job.text,
         "machine": machine,
         "plc": sorted(path.read_bytes() for path in _with_neighbours(used)),
+        "drives": sorted(path.read_bytes() for path in _with_neighbours(_drive_files(campaign, machine))),
         "settings": sorted(campaign.fixed.items()),
         "grid": list(campaign.grid.items()),
         "random": [(key, repr(of)) for key, of in campaign.random.items()],

@@ -129,6 +129,17 @@ def test_an_unknown_machine_is_named(command: Command, tmp_path: Path) -> None:
     assert command("machine", "check", tmp_path) == (2, "", f"{tmp_path}: no machine.toml there\n")
 
 
+def test_a_folder_that_is_no_machine_hides_none_of_the_package(
+    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("demo", "mine"):
+        (tmp_path / name).mkdir()
+    assert command("machine", "check", "demo")[0] == 0
+    assert command("machine", "check", "mine") == (2, "", "mine: no machine.toml there\n")
+    assert command("machine", "check", "..") == (2, "", "..: no machine.toml there\n")
+
+
 def test_a_missing_eds_is_named(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "drive_without_eds.py").write_text(DRIVE_WITHOUT_EDS, encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)

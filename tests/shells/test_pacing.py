@@ -225,6 +225,16 @@ def test_the_collector_rests_and_comes_back() -> None:
     assert gc.get_freeze_count() == 0
 
 
+def test_the_collector_rests_as_long_as_any_bench_wants_it() -> None:
+    with frozen_garbage():
+        with frozen_garbage():
+            pass
+        assert not gc.isenabled()
+        assert gc.get_freeze_count() > 0
+    assert gc.isenabled()
+    assert gc.get_freeze_count() == 0
+
+
 def test_what_was_asked_of_the_operating_system_is_told_and_given_back() -> None:
     calm = ask(realtime=True)
     assert len(calm.notes) == 2

@@ -124,6 +124,22 @@ def test_cycles_without_room_are_a_gap_of_whole_blocks(tmp_path: Path) -> None:
     assert not TraceReader(path).torn
 
 
+def test_the_last_cycles_wait_for_room(tmp_path: Path) -> None:
+    path = tmp_path / "late.mcap"
+    steps = Steps(path)
+    notes: list[str] = []
+    recorder = Handover(steps.what, steps.ring, notes.append, room=7)
+    stuck: Any = StuckPipe(recorder._outbox._pipe)
+    recorder._outbox._pipe = stuck
+    cycles = 7 * BATCH + 20
+    steps.go(recorder, cycles)
+    assert recorder._outbox.full
+    stuck.open = True
+    recorder.close()
+    assert sum(len(block.rows) for block in blocks(path)) == cycles
+    assert notes == []
+
+
 def test_a_gap_is_shown_and_counts_as_a_difference(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -69,7 +69,7 @@ class SmallBench:
     def publish(self, **io: bytes) -> None:
         self.cycle += 1
         changed = self.image.take_changed()
-        self.server.publish(self.cycle, self.cycle * 1_000_000, self.image.snapshot(), changed, io)
+        self.server.publish(self.cycle, self.cycle * 1_000_000, bytes(self.image.data), changed, io)
 
     def answer(self, request: Request) -> None:
         self.seen.append(request)

@@ -23,7 +23,6 @@ class Preparation:
     """Writes the segment ring of the kernel rows; knows where the prepared path ends."""
 
     def __init__(self, setup: KernelSetup, rows: KernelRows) -> None:
-        self._setup = setup
         self._rows = rows
         measuring = [dynamics.measuring(axis, setup.channel) for axis in setup.axes]
         self._target = np.empty(len(setup.axes))

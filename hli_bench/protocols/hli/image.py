@@ -48,7 +48,3 @@ class Image:
         changed = [groups[index] for index in sorted(self._changed)]
         self._changed.clear()
         return [(group.path, group.pack(self.data)) for group in changed]
-
-    def snapshot(self) -> bytes:
-        """Return a copy of all bytes."""
-        return bytes(self.data)

@@ -64,11 +64,6 @@ class Group:
         self._in_image = Struct(text)
         self._packed = Struct("<" + "".join(element.code for element in self.elements))
 
-    @property
-    def packed_size(self) -> int:
-        """Bytes of `pack`."""
-        return self._packed.size
-
     def pack(self, image: bytes | bytearray) -> bytes:
         """Return all members without gaps, in order (unit: request_r, enable_w, command_w, state_r)."""
         return self._packed.pack(*self._in_image.unpack_from(image, self.start))

@@ -79,14 +79,6 @@ class CommandsPacking:
         return Commands(plc, cycle, tuple(writes))
 
 
-def encoded(element: Element, value: Value) -> bytes:
-    """Return the value packed by the element's type. Raises InputError when it does not fit."""
-    try:
-        return Struct("<" + element.code).pack(value)
-    except struct.error as error:
-        raise InputError(f"{element.path}: {value!r} is no {element.type}") from error
-
-
 def as_text(value: Value) -> str:
     """Return the value as people and JSON write it: true, false, 123."""
     return str(value).lower() if isinstance(value, bool) else str(value)

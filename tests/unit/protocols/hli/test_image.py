@@ -16,11 +16,9 @@ PROBE = LAYOUT.element("ax/2/lr_mc_control/probing_signal/command_w")
 def test_a_value_lies_in_the_bytes_where_the_layout_says() -> None:
     image = Image(LAYOUT)
     image.set(TIMESTAMP.id, -5)
-    assert image.snapshot()[TIMESTAMP.offset : TIMESTAMP.offset + 8] == (-5).to_bytes(
-        8, "little", signed=True
-    )
+    assert image.data[TIMESTAMP.offset : TIMESTAMP.offset + 8] == (-5).to_bytes(8, "little", signed=True)
     assert image.get(TIMESTAMP.id) == -5
-    assert sum(image.snapshot()[: TIMESTAMP.offset]) == 0
+    assert sum(image.data[: TIMESTAMP.offset]) == 0
 
 
 @given(st.lists(st.integers(0, len(LAYOUT.elements) - 1)), st.randoms())

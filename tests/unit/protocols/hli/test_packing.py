@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from hli_bench.base.errors import InputError
 from hli_bench.protocols.hli.layout import Layout
-from hli_bench.protocols.hli.packing import CommandsPacking, as_text, encoded, pack_image, unpack_image
+from hli_bench.protocols.hli.packing import CommandsPacking, as_text, pack_image, unpack_image
 from hli_bench.wire.hli import Commands, Write
 
 LAYOUT = Layout([(1, "X", "linear")])
@@ -55,8 +55,5 @@ def test_the_image_message_carries_cycle_and_dc_time_in_front() -> None:
     assert unpack_image(message) == (5, -1, b"abc")
 
 
-def test_a_value_packed_or_as_text() -> None:
-    assert encoded(TIME, 258) == b"\x02\x01\x00\x00\x00\x00\x00\x00"
+def test_a_value_as_text() -> None:
     assert (as_text(True), as_text(12)) == ("true", "12")
-    with pytest.raises(InputError, match="SGN64"):
-        encoded(TIME, 2**64)

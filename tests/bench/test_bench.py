@@ -27,6 +27,24 @@ def test_a_limit_of_machine_time_aborts_a_program() -> None:
         assert bench.run("%b\nN10 G01 X0 F600\nM30\n").completed
 
 
+LONG = "N10 G01 G90 Z200 F2000\n" + "".join(f"N{20 + at} G01 Z{100 + 100 * (at % 2)}\n" for at in range(200))
+
+
+def test_a_program_after_one_that_was_aborted_with_a_full_look_ahead_moves() -> None:
+    with Bench("demo", plc=[]) as bench:
+        assert bench.run(LONG + "M30\n", limit_s=0.5).status == "aborted"
+        assert bench.run("N10 G90 G01 Z310 F6000\nN20 M30\n", limit_s=30.0).completed
+        assert bench.position_mm("Z") == pytest.approx(310, abs=0.1)
+
+
+def test_a_program_after_one_that_an_error_ended_with_a_full_look_ahead_moves() -> None:
+    with Bench("demo", {"plant.stop.Z.at_mm": 250, "plant.stop.Z.side": "below"}, plc=[]) as bench:
+        assert bench.run(LONG + "M30\n", limit_s=60.0).status == "error"
+        bench.reset()
+        assert bench.run("N10 G90 G01 Z310 F6000\nN20 M30\n", limit_s=30.0).completed
+        assert bench.position_mm("Z") == pytest.approx(310, abs=0.1)
+
+
 @pytest.mark.parametrize(("limit_s", "cycles"), [(0.0003, 1), (0.0014, 2), (0.3, 300), (0.5004, 501)])
 def test_a_limit_is_over_with_the_cycle_in_which_it_is_reached(limit_s: float, cycles: int) -> None:
     with Bench("demo", plc=[]) as bench:

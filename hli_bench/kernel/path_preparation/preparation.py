@@ -12,7 +12,7 @@ from hli_bench.kernel.path_preparation import dynamics
 from hli_bench.kernel.path_preparation.dynamics import Ramp
 from hli_bench.kernel.setup import KernelSetup
 from hli_bench.laws.native import bind
-from hli_bench.laws.rows import SEGMENTS, KernelRows
+from hli_bench.laws.rows import IDLE, SEGMENTS, KernelRows
 from hli_bench.laws.segments import NOTHING, put_segment
 
 RAPID, FEED, MEASURING = range(3)
@@ -53,9 +53,10 @@ class Preparation:
 
     @property
     def room(self) -> int:
-        """Segments that can still be put."""
+        """Segments that can still be put; of a path that was stopped none is left."""
         path = self._rows.path[0]
-        return int(SEGMENTS - 1 - (path["tail"] - path["head"]))
+        left = 0 if path["state"] == IDLE else path["tail"] - path["head"]
+        return int(SEGMENTS - 1 - left)
 
     def line(self, block: Line) -> int | None:
         """Put a block of straight motion; return its segment number, None when it moves nothing."""

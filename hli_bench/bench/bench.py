@@ -1,6 +1,6 @@
 """The public class: a machine that runs NC programs."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -101,9 +101,9 @@ class Bench:
             self._pace = RealPace(self.config.cycle_ns, idle=self._garbage.idle) if pace == "real" else None
             self._standstill = Standstill(self.kernel, on_note)
             self._plcs = plc_configs(self.config, plc)
-            self._up = False
-            self._lost: list[str] = []
-            """What there is to say of scripts that did not return, to be said in the next result."""
+            self._up = self._closed = False
+            self._lost: dict[str, str] = {}
+            """What there is to say of PLCs whose scripts did not return, to be said in every result."""
             self.interrupted: Result | None = None
             """What a program had done when it was interrupted."""
             # Built: from here on `close` ends what the stack holds.
@@ -119,10 +119,13 @@ class Bench:
 
     def close(self) -> None:
         """End the bench: processes, sessions, buses."""
+        self._closed = True
         self._closing.close()
 
     def start_up(self) -> None:
         """Switch on: bring all drives into operation, then start the PLC tasks. `run` does it when needed."""
+        if self._closed:
+            raise BenchError("this bench is closed; make a new one")
         if self._up:
             return
         if self.engine.cycle:
@@ -153,7 +156,6 @@ class Bench:
         self._tap.collector = collector
         first = self.engine.cycle
         self._standstill.begin(first)
-        self._lost.clear()
         last = FOREVER if limit_s is None else first + self._cycles(limit_s)
         if self._pace is not None:
             self._pace.resume()
@@ -173,6 +175,7 @@ class Bench:
             raise
         finally:
             if not ended:
+                self.engine.hand_out()
                 self.reset()
             self._tap.collector = None
             if self._door is not None:
@@ -213,7 +216,7 @@ class Bench:
             notes=(
                 *(f"motion was held: {element}" for element in holding),
                 *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
-                *self._lost,
+                *self._without_plc(),
                 *nothing_to_probe(self.config, variables, measured, collector.errors),
             ),
             lateness=self._pace.take_part() if self._pace else None,
@@ -312,9 +315,16 @@ class Bench:
         )
         return self._tap.door
 
-    def _lost_plc(self, note: str) -> None:
+    def _without_plc(self) -> Iterator[str]:
+        """Yield what there is to say of scripts in this process that take part no more."""
+        present = {plc.name for plc in self.engine.plcs}
+        for plc in self._plcs:
+            if not plc.process and plc.name not in present:
+                yield self._lost.get(plc.name) or f"PLC {plc.name} takes part no more: its script has failed"
+
+    def _lost_plc(self, name: str, note: str) -> None:
         """Tell at once, and in the result, that a script has not returned."""
-        self._lost.append(note)
+        self._lost[name] = note
         self._on_note(note)
 
     def _attach_plcs(self) -> None:
@@ -325,7 +335,7 @@ class Bench:
             script = loaded(plc.script)
             period_us = plc.period_us or period_of(script, plc.script)
             task = Task(plc.name, script, period_us, self.kernel.image.layout, self.terminal_layouts)
-            self.engine.attach(LocalPlc(task, self.config.cycle_ns, self._lost_plc))
+            self.engine.attach(LocalPlc(task, self.config.cycle_ns, partial(self._lost_plc, plc.name)))
 
     def _start_plc_process(self, plc: PlcConfig) -> None:
         """Start a script as a process of its own and wait until it has attached."""

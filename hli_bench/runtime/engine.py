@@ -269,6 +269,10 @@ class Engine:
         finally:
             self._hand_out(cycle)
 
+    def hand_out(self) -> None:
+        """Tell at once what the kernel would tell in its next cycle: another program may begin with that."""
+        self._hand_out(self.cycle)
+
     def _hand_out(self, cycle: int) -> None:
         """Take what the kernel has to say: frames to be sent, records."""
         self._new_words = self._word_bytes() != self._words

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from hli_bench import Bench
-from hli_bench.base.errors import InputError, NotEmulated
+from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.bench import plc_ports
 
 
@@ -25,6 +25,40 @@ def test_a_limit_of_machine_time_aborts_a_program() -> None:
         result = bench.run("%a\nN10 G01 X100 F60\nM30\n", limit_s=1.0)
         assert (result.status, result.cycles) == ("aborted", 1000)
         assert bench.run("%b\nN10 G01 X0 F600\nM30\n").completed
+
+
+DYING = """
+from hli_bench.plc import Plc
+
+class Dying(Plc):
+    def start(self, hli, io):
+        self.cycles = 0
+
+    def cycle(self, hli, io):
+        self.cycles += 1
+        if self.cycles == 300:
+            raise ValueError("enough")
+"""
+
+
+def test_a_script_that_failed_is_told_of_in_every_later_result_and_its_error_in_none(tmp_path) -> None:
+    (tmp_path / "dying.py").write_text(DYING)
+    program = "N10 G01 G90 X20 F1000\nN20 G01 X0\nN30 M30\n"
+    with Bench("demo", plc=[tmp_path / "dying.py"]) as bench:
+        with pytest.raises(InputError, match="ValueError: enough"):
+            bench.run(program)
+        for _ in range(2):
+            result = bench.run(program)
+            assert (result.completed, result.errors) == (True, [])
+            assert "PLC dying takes part no more: its script has failed" in result.notes
+
+
+def test_a_bench_that_is_closed_runs_nothing() -> None:
+    with Bench("demo", plc=[]) as bench:
+        bench.start_up()
+    for use in (lambda: bench.run("N10 M30\n"), lambda: bench.advance(1)):
+        with pytest.raises(BenchError, match="this bench is closed"):
+            use()
 
 
 LONG = "N10 G01 G90 Z200 F2000\n" + "".join(f"N{20 + at} G01 Z{100 + 100 * (at % 2)}\n" for at in range(200))

@@ -5,16 +5,18 @@ Each command is a module with `add`, which declares it, and `execute`, which ret
 """
 
 import argparse
+import errno
 import io
 import os
 import signal
 import sys
 import traceback
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Final, NoReturn
 
 from hli_bench.base import garbage
-from hli_bench.base.errors import BenchError
+from hli_bench.base.errors import BenchError, EnvironmentLacks
 from hli_bench.base.loading import version
 from hli_bench.cli import (
     doctor,
@@ -68,6 +70,7 @@ def parser() -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command line (default: this process's) and return the exit status."""
+    _open_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
@@ -82,15 +85,32 @@ def main(argv: Sequence[str] | None = None) -> int:
         return error.exit_status
     except KeyboardInterrupt:
         return INTERRUPTED
-    except BrokenPipeError:
-        # What is still buffered must not fail again when the interpreter flushes it.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return PIPE_CLOSED
-    except Exception:
-        # A fault of ours must not look like an error of the CNC, which is 1.
-        traceback.print_exc()
-        return FAULT_OF_OURS
+    except Exception as error:
+        return _failed(error)
     return status
+
+
+def _open_streams() -> None:
+    """Give standard streams that are closed to nobody, before a file or socket gets their numbers."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            stream = Path(os.devnull).open(mode, encoding="utf-8")  # noqa: SIM115 - open as long as the process
+            os.set_inheritable(stream.fileno(), True)
+            setattr(sys, name, stream)
+
+
+def _failed(error: Exception) -> int:
+    """Say what went wrong when no command has foreseen it; return the exit status, which is none of the CNC's."""
+    number = error.errno if isinstance(error, OSError) else None
+    if number not in (errno.EPIPE, errno.ENOSPC):
+        traceback.print_exception(error)
+        return FAULT_OF_OURS
+    # What is still buffered must not fail again when the interpreter flushes it.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if number == errno.EPIPE:
+        return PIPE_CLOSED
+    print(f"standard output: cannot be written: {os.strerror(number)}", file=sys.stderr)
+    return EnvironmentLacks.exit_status
 
 
 def _take_signals() -> None:

@@ -10,7 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError
-from hli_bench.cli.options import BenchOptions, Commands, add_bench, bench_options, endpoint, supplied_file
+from hli_bench.cli.options import (
+    NO_PLC,
+    BenchOptions,
+    Commands,
+    add_bench,
+    bench_options,
+    endpoint,
+    supplied_file,
+)
 
 if TYPE_CHECKING:
     from hli_bench.bench.bench import Bench
@@ -100,8 +108,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.connect:
         return _run_connected(program, arguments)
     options = bench_options(arguments)
-    for name in OUTPUTS:
-        prepare(getattr(arguments, name), name)
+    prepare(arguments, program)
     failures: list[BenchError] = []
     result = _run(program, options, arguments, failures)
     with _collected(failures):
@@ -116,20 +123,37 @@ def execute(arguments: argparse.Namespace) -> int:
     return EXIT_STATUS[result.status]
 
 
-def prepare(file: str | None, option: str) -> None:
-    """Make sure that a file can be written; what an earlier run left there is emptied. Raises InputError."""
-    if file is None:
-        return
-    path = Path(file)
+def prepare(arguments: argparse.Namespace, program: Path) -> None:
+    """Make sure that all files can be written; what an earlier run left there is emptied. Raises InputError.
+
+    None may be a file of the run itself, or the same as another.
+    """
+    plcs = (
+        []
+        if arguments.plc is None
+        else [supplied_file("plc_scripts", one) for one in arguments.plc if one != NO_PLC]
+    )
+    taken = {path.resolve(): "is read by this run" for path in (program, *plcs)}
+    given = [
+        (Path(file), f"--{name.replace('_', '-')}") for name in OUTPUTS if (file := getattr(arguments, name))
+    ]
+    for path, option in given:
+        place = path.resolve()
+        if place in taken and (path.is_file() or not path.exists()):
+            raise InputError(f"{option}: {taken[place]}", file=str(path))
+        taken[place] = f"is given to {option} too"
+    for path, option in given:
+        _empty(path, option)
+
+
+def _empty(path: Path, option: str) -> None:
     existed = path.exists()
     try:
         path.open("wb").close()
         if not existed:
             path.unlink()
     except OSError as error:
-        raise InputError(
-            f"--{option.replace('_', '-')}: cannot be written: {error.strerror}", file=file
-        ) from error
+        raise InputError(f"{option}: cannot be written: {error.strerror}", file=str(path)) from error
 
 
 def finish(result: Mapping[str, Any], file: str | None) -> None:
@@ -274,19 +298,14 @@ def _run_connected(program: Path, arguments: argparse.Namespace) -> int:
         if getattr(arguments, name) is not None:
             option = f"--{name.replace('_', '-')}"
             raise InputError(f"{option} cannot be chosen for a bench that is up already", file="--connect")
-    prepare(arguments.result, "result")
+    prepare(arguments, program)
     from hli_bench.bench.result import Error
     from hli_bench.shells.zenoh_client import HliClient
 
     text = program.read_text(encoding="utf-8", errors="replace")
+    stopped = f"stopped: the bench at {arguments.connect} has aborted {program.name} and stays up"
     with HliClient(arguments.connect) as client:
-        try:
-            result = client.run(text, program.name)
-        except KeyboardInterrupt:
-            client.reset()
-            where = f"the bench at {arguments.connect}"
-            print(f"stopped: {where} has aborted {program.name} and stays up", file=sys.stderr)
-            raise
+        result = client.run(text, program.name, lambda: _print_note(stopped))
     for message in result["messages"]:
         print(message["text"], flush=True)
     for error in result["errors"]:

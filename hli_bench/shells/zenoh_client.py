@@ -1,7 +1,7 @@
 """A bench that is up, from outside: elements, programs, state, faults. What the command line uses."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from queue import Empty, SimpleQueue
 from typing import Any, Final, Self
 from urllib.parse import quote
@@ -32,7 +32,8 @@ class HliClient:
         self.endpoint = endpoint
         self.session = connect(endpoint, lease_ms)
         try:
-            answers = self._ask(f"{machine or '*'}/hli/layout")
+            question = f"{machine or '*'}/hli/layout"
+            answers = self._answers(self.session.get(question, timeout=ANSWER_S))
             key, layout = next(iter(answers.items()), ("", b""))
             if not key:
                 raise EnvironmentLacks(f"no bench{f' of machine {machine!r}' * bool(machine)} at {endpoint}")
@@ -108,10 +109,19 @@ class HliClient:
             for subscriber in watched:
                 subscriber.undeclare()
 
-    def run(self, text: str, name: str = "", timeout_s: float = PROGRAM_S) -> dict[str, Any]:
-        """Run an NC program and return its result. Raises InputError when the bench refuses it."""
+    def run(
+        self, text: str, name: str = "", on_interrupt: Callable[[], None] = lambda: None
+    ) -> dict[str, Any]:
+        """Run an NC program and return its result; Ctrl-C aborts it. Raises InputError when the bench refuses it."""
         selector = f"cnc/run?name={quote(name)}" if name else "cnc/run"
-        result: dict[str, Any] = json.loads(self._one(selector, text, timeout_s=timeout_s))
+        replies = self._get(selector, text, PROGRAM_S)
+        try:
+            answer = self._only(selector, replies)
+        except KeyboardInterrupt:
+            self.reset()
+            on_interrupt()
+            answer = self._only(selector, replies)
+        result: dict[str, Any] = json.loads(answer)
         return result
 
     def reset(self) -> str:
@@ -157,23 +167,35 @@ class HliClient:
     def _one(
         self, selector: str, question: str | None = None, timeout_s: float = ANSWER_S, encoding: Any = None
     ) -> bytes:
-        answers = self._ask(f"{self.machine}/{selector}", question, timeout_s, encoding)
+        return self._only(selector, self._get(selector, question, timeout_s, encoding))
+
+    def _get(
+        self, selector: str, question: str | None, timeout_s: float, encoding: Any = None
+    ) -> Iterable[zenoh.Reply]:
+        key = f"{self.machine}/{selector}"
+        replies: Iterable[zenoh.Reply] = self.session.get(
+            key, payload=question, encoding=encoding, timeout=timeout_s
+        )
+        return replies
+
+    def _only(self, selector: str, replies: Iterable[zenoh.Reply]) -> bytes:
+        """Return the answer of the bench. Raises InputError when it refuses, EnvironmentLacks when there is none."""
+        answers = self._answers(replies)
         if not answers:
             raise EnvironmentLacks(f"the bench at {self.endpoint} has ended or does not answer {selector}")
         return next(iter(answers.values()))
 
-    def _ask(
-        self, selector: str, question: str | None = None, timeout_s: float = ANSWER_S, encoding: Any = None
-    ) -> dict[str, bytes]:
+    @staticmethod
+    def _answers(replies: Iterable[zenoh.Reply]) -> dict[str, bytes]:
         """Return the answers by key. Raises InputError with the bench's reason when it refuses."""
         found: dict[str, bytes] = {}
-        for reply in self.session.get(selector, payload=question, encoding=encoding, timeout=timeout_s):
-            if reply.ok is None:
+        for reply in replies:
+            if reply.ok is not None:
+                found[str(reply.ok.key_expr)] = payload(reply.ok)
+            elif reply.err is not None:
                 reason = payload(reply.err).decode("utf-8", "replace")
                 if reason != "Timeout":
                     raise InputError(reason)
-                continue
-            found[str(reply.ok.key_expr)] = payload(reply.ok)
         return found
 
     def _terminal_layouts(self) -> list[TerminalLayout]:

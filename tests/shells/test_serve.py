@@ -185,13 +185,17 @@ def test_ctrl_c_in_a_program_ends_bench_plc_and_run(serve: Any, endless: Path) -
         assert command.nothing_left()
 
 
-def test_ctrl_c_of_run_ends_the_program_and_leaves_the_bench_up(serve: Any, endless: Path) -> None:
+def test_ctrl_c_of_run_ends_the_program_and_leaves_the_bench_up(
+    serve: Any, endless: Path, tmp_path: Path, result: Any
+) -> None:
     bench = serve("--pace", "real")
-    run = bench.run(endless)
+    run = bench.run(endless, "--result", tmp_path / "result.json")
     assert bench.running()
     run.interrupt()
     assert run.end() == 130
-    assert run.err == [f"stopped: the bench at {bench.endpoint} has aborted {endless.name} and stays up"]
+    assert run.err[0] == f"stopped: the bench at {bench.endpoint} has aborted {endless.name} and stays up"
+    assert run.err[1].startswith(f"{endless.name}: aborted, ")
+    assert result()["status"] == "aborted"
     assert bench.state()["state"] == "ready"
 
 

@@ -36,6 +36,53 @@ def read_result(path: Path) -> Any:
     return json.loads(path.read_text(encoding="utf-8"))
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--trace", "own.nc"], "own.nc: --trace: is read by this run"),
+        (["--result", "./own.nc"], "own.nc: --result: is read by this run"),
+        (["--plc", "own.py", "--can-log", "own.py"], "own.py: --can-log: is read by this run"),
+        (["--result", "x", "--report", "./x"], "x: --report: is given to --result too"),
+    ],
+)
+def test_no_file_of_a_run_is_written_over(
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    options: list[str],
+    said: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("own.nc", NEAR), ("own.py", "class Own:\n    def cycle(self, hli, io): ...\n")):
+        (tmp_path / name).write_text(text)
+    assert main(["run", "own.nc", *options]) == 2
+    assert capsys.readouterr().err == f"{said}\n"
+    assert (tmp_path / "own.nc").read_text() == NEAR
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["own.nc", "own.py"]
+
+
+@pytest.mark.parametrize(
+    ("redirected", "status", "said"),
+    [
+        (">&-", 0, "completed"),
+        (">/dev/full", 3, "standard output: cannot be written: No space left on device"),
+        ("2>&-", 0, None),
+    ],
+)
+def test_standard_streams_that_are_closed_or_full(
+    tmp_path: Path, redirected: str, status: int, said: str
+) -> None:
+    (tmp_path / "near.nc").write_text(NEAR)
+    line = " ".join([*COMMAND, "run", str(tmp_path / "near.nc"), *FACE, redirected])
+    ended = subprocess.run(["sh", "-c", line], capture_output=True, text=True, check=False)
+    assert ended.returncode == status
+    assert "Traceback" not in ended.stderr
+    if said is None:
+        assert ended.stdout == "V.A.MESS.Z=0.000000\n"
+    else:
+        assert said in ended.stderr
+
+
 def test_messages_are_all_of_standard_output(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     names = {"result": "r.json", "report": "r.html", "trace": "r.mcap", "can-log": "can.log"}
     files = {option: tmp_path / name for option, name in names.items()}

@@ -9,7 +9,7 @@ from hli_bench.base.units import mm
 from hli_bench.kernel.blocks import Source
 from hli_bench.kernel.channel import Channel
 from hli_bench.kernel.core import Core
-from hli_bench.kernel.decoder import Decoder, DecoderAxis, DecoderDefaults
+from hli_bench.kernel.decoder import WITHOUT_MOTION, Decoder, DecoderAxis, DecoderDefaults
 from hli_bench.kernel.drive_manager import start_up
 from hli_bench.kernel.drive_manager.objects import ObjectChannel
 from hli_bench.kernel.drive_manager.telegram import ActualTelegrams, CommandTelegrams
@@ -80,13 +80,16 @@ class Kernel:
         for axis in self.setup.axes:
             self._begin_drive(axis.index, "configure")
 
-    def start(self, lines: Iterable[str], name: str) -> None:
-        """Begin an NC program. Usage errors of its text come out of `decide`."""
+    def start(self, lines: Iterable[str], name: str, without_motion: int = WITHOUT_MOTION) -> None:
+        """Begin an NC program. Usage errors of its text come out of `decide`.
+
+        For so many blocks without motion a cycle passes.
+        """
         axes = [
             DecoderAxis(axis.index, axis.name, axis.number, axis.kind, axis.params.kenngr.messachse)
             for axis in self.setup.axes
         ]
-        decoder = Decoder(lines, name, axes, DecoderDefaults(self.setup.channel.messtyp))
+        decoder = Decoder(lines, name, axes, DecoderDefaults(self.setup.channel.messtyp), without_motion)
         self.channel.start(decoder)
 
     def take_frames(self, frames: Iterable[CanFrame]) -> bool:

@@ -27,6 +27,26 @@ def test_a_limit_of_machine_time_aborts_a_program() -> None:
         assert bench.run("%b\nN10 G01 X0 F600\nM30\n").completed
 
 
+@pytest.mark.parametrize(("pace", "cycles"), [("free", 1), ("real", 11)])
+def test_blocks_without_motion_take_cycles_so_that_a_paced_bench_keeps_its_time(pace: str, cycles: int) -> None:
+    with Bench("demo", plc=[], pace=pace) as bench:
+        result = bench.run("N10 P1=1\n" * 200 + "N20 M30\n")
+    assert (result.completed, result.cycles) == (True, cycles)
+
+
+@pytest.mark.req("M-024")
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+def test_the_measuring_type_of_the_channel_list_is_that_of_a_program_that_sets_none(kind: int) -> None:
+    face = {"plant.probe.Z.face_mm": 100, "plant.probe.Z.material": "below"}
+    program = "N20 G90 G100 Z20 F600\nN30 M30\n"
+    with Bench("demo", face | {"channel.messtyp": kind}) as bench:
+        listed = bench.run(program)
+    with Bench("demo", face) as bench:
+        programmed = bench.run(f"N10 #MEAS MODE[{kind}]\n{program}")
+    assert listed.measurements
+    assert (listed.measurements, listed.variables) == (programmed.measurements, programmed.variables)
+
+
 DYING = """
 from hli_bench.plc import Plc
 

@@ -21,7 +21,7 @@ _HASH = re.compile(r"#\s*([A-Z]+)", re.IGNORECASE)
 _SUBROUTINE = re.compile(r"%L\s", re.IGNORECASE)
 _RAPID: Final = {"0": True, "00": True, "1": False, "01": False}
 WITHOUT_MOTION: Final = 2000
-"""Blocks without motion after which the kernel gets a chance to go on (decided here): a loop may be endless."""
+"""Blocks without motion for which a cycle passes (decided here): a loop may be endless."""
 _ABSOLUTE: Final = {"90": True, "91": False}
 
 
@@ -39,16 +39,31 @@ class Decoder:
     built; what the CNC reports by number comes as a `CncError`, after which nothing follows.
     """
 
-    __slots__ = ("_axis_of", "_context", "_control", "_lines", "_memory", "_named", "_words")
+    __slots__ = (
+        "_axis_of",
+        "_context",
+        "_control",
+        "_lines",
+        "_memory",
+        "_named",
+        "_without_motion",
+        "_words",
+    )
 
     def __init__(
-        self, program: Iterable[str], name: str, axes: Sequence[DecoderAxis], defaults: DecoderDefaults
+        self,
+        program: Iterable[str],
+        name: str,
+        axes: Sequence[DecoderAxis],
+        defaults: DecoderDefaults,
+        without_motion: int = WITHOUT_MOTION,
     ) -> None:
         self._context = Context(name, axes, defaults)
         self._lines = Lines(program)
         self._memory = Variables(self._context)
         self._control = Control(self._context, self._memory, self._lines)
         self._words = WordReader(self._context, self._memory)
+        self._without_motion = without_motion
         self._named = False
         self._axis_of: dict[str, AxisIndex] = {}
         for axis in axes:
@@ -77,14 +92,14 @@ class Decoder:
 
     def _items(self) -> Steps:
         context, next_line, plain = self._context, self._lines.next, self._plain
-        blocks = 0
+        blocks, without_motion = 0, self._without_motion
         while (raw := next_line()) is not None:
             item = plain(raw)
             if isinstance(item, Line):
                 yield item
                 continue
             blocks += 1
-            if blocks % WITHOUT_MOTION == 0:
+            if blocks % without_motion == 0:
                 yield Idle()
             if item is None:
                 continue

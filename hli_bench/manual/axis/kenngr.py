@@ -547,7 +547,7 @@ class Kenngr:
             axis_types="TR",
             doc="Stroke of the probe; types 2 and 4 limit the feed so that the axis brakes within it.",
             source="measurement manual 8.2.2",
-            effect=Effect.ACCEPTED,
+            effect=Effect.EMULATED,
         ),
     )
     kasto_achse: bool = param(
@@ -745,7 +745,7 @@ class Kenngr:
             axis_types="TR",
             doc="Measuring feed of type 2.",
             source="measurement manual 8.2.2",
-            effect=Effect.ACCEPTED,
+            effect=Effect.EMULATED,
         ),
     )
     probing_signal_via_plc: bool = param(

@@ -41,7 +41,6 @@ class ChannelParams:
             data_type=DataType.UNS16,
             low=1,
             high=7,
-            not_emulated=(2, 3, 4, 5, 6),
             doc="Measurement type at start-up.",
             source="measurement manual 8.2.1",
             effect=Effect.EMULATED,

@@ -222,8 +222,8 @@ def test_a_small_folder_needs_no_list(tmp_path: Path) -> None:
 
 
 def test_what_is_not_built_says_so() -> None:
-    with pytest.raises(NotEmulated, match="channel: P-CHAN-00057: messtyp = 3"):
-        load("demo", {"channel.messtyp": 3})
+    with pytest.raises(NotEmulated, match=r"channel: P-CHAN-00071: prog_start\.slope\.profile = 3"):
+        load("demo", {"channel.prog_start.slope.profile": 3})
     with pytest.raises(NotEmulated, match="fault frame_loss"):
         load("demo", {"fault": [{"kind": "frame_loss"}]})
     with pytest.raises(NotEmulated, match="at a condition"):

@@ -115,7 +115,8 @@ def test_refusals() -> None:
         "P-AXIS-00516: kenngr.measure.signal = PLC_FIRST_EVENT is not emulated",
         "P-AXIS-00397: antr.function[0].commu = CYCLIC is not emulated",
     ]
-    assert refusals(with_value(ChannelParams(), "messtyp", 7)) == []
-    assert refusals(with_value(ChannelParams(), "messtyp", 3)) == [
-        "P-CHAN-00057: messtyp = 3 is not emulated"
+    for kind in range(1, 8):
+        assert refusals(with_value(ChannelParams(), "messtyp", kind)) == []
+    assert refusals(with_value(ChannelParams(), "prog_start.slope.profile", 3)) == [
+        "P-CHAN-00071: prog_start.slope.profile = 3 is not emulated"
     ]

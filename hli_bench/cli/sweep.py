@@ -4,9 +4,13 @@ import argparse
 import os
 import sys
 from pathlib import Path
+from typing import Final
 
 from hli_bench.base.errors import InputError
 from hli_bench.cli.options import Commands, supplied_file
+
+MOST_WORKERS: Final = 256
+"""More processes than this are a mistake (decided here)."""
 
 
 def add(commands: Commands) -> None:
@@ -37,9 +41,11 @@ def add(commands: Commands) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Do the campaign and return the exit status."""
-    workers = len(os.sched_getaffinity(0)) if arguments.workers is None else arguments.workers
-    if workers < 1:
-        raise InputError(f"{workers} is not valid, expected 1 or more", file="--workers")
+    workers = (
+        min(len(os.sched_getaffinity(0)), MOST_WORKERS) if arguments.workers is None else arguments.workers
+    )
+    if not 1 <= workers <= MOST_WORKERS:
+        raise InputError(f"{workers} is not valid, expected 1 to {MOST_WORKERS}", file="--workers")
     file = supplied_file("campaigns", arguments.campaign)
     from hli_bench.laws import native
     from hli_bench.shells.apart import apart

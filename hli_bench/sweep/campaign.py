@@ -14,7 +14,7 @@ from hli_bench.bench.config import MachineConfig
 from hli_bench.bench.drive_models import drive_model
 from hli_bench.bench.folder import load, machine_folder
 from hli_bench.bench.sources import NUMBERED, SET, line_numbers, line_of, toml_tree
-from hli_bench.sweep.draws import FORMS, Choice, Distribution, Integers, Plain, distribution, share
+from hli_bench.sweep.draws import FORMS, RULES, Choice, Distribution, Integers, Plain, distribution, share
 from hli_bench.sweep.expressions import metric
 from hli_bench.sweep.work import PLACEHOLDER, PROGRAM, Job, Run
 
@@ -197,7 +197,7 @@ class _Reader:
                     found = distribution(name, numbers)
                 except ValueError as error:
                     message = (
-                        f"{key}: {numbers!r} is not valid for {name}, expected {FORMS[name]}, low up to high"
+                        f"{key}: {numbers!r} is not valid for {name}, expected {FORMS[name]}{RULES[name]}"
                     )
                     raise self._error_of(key, message) from error
                 if isinstance(found, Choice):

@@ -73,6 +73,13 @@ FORMS: Final = {
     "choice": "[value, ...]",
 }
 """What follows the name of a distribution in a campaign."""
+RULES: Final = {
+    "uniform": ", low up to high",
+    "normal": ", sigma from 0 on",
+    "integers": ", whole numbers, low up to high",
+    "choice": "",
+}
+"""What must be true of it besides."""
 
 
 def distribution(name: str, numbers: Sequence[object]) -> Distribution:

@@ -60,9 +60,11 @@ class LocalProcesses:
         context = multiprocessing.get_context("spawn")
         with ExitStack() as closing:
             waiting: dict[_Pipe, int] = {}
-            for _ in range(self._workers):
+            for _, chunk in zip(range(self._workers), chunks, strict=False):
                 pipe = closing.enter_context(_Worker(context, job, self._work))
-                waiting[pipe] = sum(_hand_out(pipe, chunks) for _ in range(AHEAD))
+                waiting[pipe] = _hand_out(pipe, iter([chunk]))
+            for pipe in waiting:
+                waiting[pipe] += sum(_hand_out(pipe, chunks) for _ in range(AHEAD - 1))
             while any(waiting.values()):
                 ready = wait([pipe for pipe, count in waiting.items() if count])
                 for pipe in cast("list[_Pipe]", ready):
@@ -146,16 +148,18 @@ class Dask:
     """A Dask cluster: the one at `address`, or `workers` processes of this computer."""
 
     def __init__(self, address: str | None, workers: int, work: Work = run_chunk) -> None:
+        """Raises EnvironmentLacks where Dask is not installed."""
         self._address = address
         self._workers = workers
         self._work = work
+        try:
+            self._dask: Any = module("distributed")
+        except InputError as error:
+            raise EnvironmentLacks(f"this engine needs Dask: {how_to_install('distributed')}") from error
 
     def chunks(self, job: Job, chunks: Iterator[Sequence[Run]]) -> Iterator[Chunk]:
         """Do all chunks. Raises EnvironmentLacks when there is no such cluster or its workers do not fit."""
-        try:
-            dask: Any = module("distributed")
-        except InputError as error:
-            raise EnvironmentLacks(f"this engine needs Dask: {how_to_install('distributed')}") from error
+        dask = self._dask
         with ExitStack() as closing:
             target: Any = self._address
             if target is None:

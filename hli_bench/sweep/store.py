@@ -111,9 +111,16 @@ class Store:
         files = self._parts()
         if self.table.exists():
             # The table may be there and its parts not yet gone.
-            return pq.read_table(self.table, schema=self._schema)
-        tables = [pq.read_table(file, schema=self._schema) for file in files]
+            return self._read(self.table)
+        tables = [self._read(file) for file in files]
         return pa.concat_tables(tables) if tables else self._schema.empty_table()
+
+    def _read(self, file: Path) -> Any:
+        try:
+            return pq.read_table(file, schema=self._schema)
+        except (OSError, pa.ArrowException) as error:
+            message = "is damaged; delete it, and the same command does its runs anew"
+            raise InputError(message, file=str(file)) from error
 
     def _table(self, rows: Sequence[Row]) -> Any:
         campaign = self._campaign

@@ -46,6 +46,9 @@ def _run(campaign: Campaign, store: Store, engine: Engine, workers: int, stream:
         finally:
             progress.end()
     table = store.finish()
+    for name in campaign.metrics:
+        if table.column(name).null_count == table.num_rows:
+            print(f"warning: {name} is empty in all {table.num_rows} runs", file=stream)
     (store.folder / REPORT).write_text(report_html(campaign, table), encoding="utf-8")
     return len(rest)
 

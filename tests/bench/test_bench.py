@@ -28,7 +28,9 @@ def test_a_limit_of_machine_time_aborts_a_program() -> None:
 
 
 @pytest.mark.parametrize(("pace", "cycles"), [("free", 1), ("real", 11)])
-def test_blocks_without_motion_take_cycles_so_that_a_paced_bench_keeps_its_time(pace: str, cycles: int) -> None:
+def test_blocks_without_motion_take_cycles_so_that_a_paced_bench_keeps_its_time(
+    pace: str, cycles: int
+) -> None:
     with Bench("demo", plc=[], pace=pace) as bench:
         result = bench.run("N10 P1=1\n" * 200 + "N20 M30\n")
     assert (result.completed, result.cycles) == (True, cycles)

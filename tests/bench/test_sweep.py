@@ -156,6 +156,32 @@ def test_a_changed_campaign_is_refused(folder, done):
     assert "holds runs of another campaign (different: repeats)" in ended.stderr
 
 
+def test_a_damaged_result_file_is_named_and_its_runs_are_done_anew_without_it(tmp_path):
+    (tmp_path / "p.nc").write_text("N20 M30\n")
+    (tmp_path / "c.toml").write_text(
+        'program = "p.nc"\nrepeats = 2\n[metrics]\ntime_s = "sim_s"\nnothing = "measurements[5].acs_mm"\n'
+    )
+    ended = sweep(tmp_path, "out", "--workers", "1")
+    assert "warning: nothing is empty in all 2 runs" in ended.stderr.splitlines()
+    table = tmp_path / "out" / "runs.parquet"
+    whole = table.read_bytes()
+    table.write_bytes(whole[:100])
+    ended = sweep(tmp_path, "out", "--workers", "1")
+    assert (ended.returncode, ended.stderr.startswith(f"{table}: is damaged; delete it")) == (2, True)
+    table.unlink()
+    assert sweep(tmp_path, "out", "--workers", "1").returncode == 0
+    assert table.read_bytes() == whole
+
+
+def test_no_more_workers_are_started_than_there_are_chunks():
+    started = list(engines.LocalProcesses(9, _pid).chunks(None, iter([[None], [None]])))
+    assert len(started) == len({pid for (pid,) in started}) == 2
+
+
+def _pid(job, runs):
+    return [os.getpid()]
+
+
 def test_a_run_that_cannot_be_ends_the_campaign_and_is_named(tmp_path):
     (tmp_path / "p.nc").write_text("N10 G01 Z299 F{feed}\nN20 M30\n")
     text = 'program = "p.nc"\n[grid]\nprogram.feed = ["500", "QQ"]\n[metrics]\ntime_s = "sim_s"\n'
@@ -169,7 +195,7 @@ def test_a_run_that_cannot_be_ends_the_campaign_and_is_named(tmp_path):
     ("options", "named"),
     [
         (("--engine", "ray"), "--engine: 'ray' is not valid, expected local, dask://HOST:PORT or dask-local"),
-        (("--workers", "0"), "--workers: 0 is not valid, expected 1 or more"),
+        (("--workers", "0"), "--workers: 0 is not valid, expected 1 to 256"),
     ],
 )
 def test_options_that_are_wrong(folder, options, named):
@@ -187,7 +213,7 @@ def test_without_pyarrow_or_dask_the_command_that_installs_it_is_told(monkeypatc
     assert str(caught.value) == f"a sweep needs pyarrow: {install} pyarrow"
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(EnvironmentLacks) as caught:
-        list(engines.Dask(None, 1).chunks(None, iter(())))
+        engines.engine("dask-local", 1)
     assert str(caught.value) == f"this engine needs Dask: {install} distributed"
 
 

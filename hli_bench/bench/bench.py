@@ -11,11 +11,11 @@ from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.time import NS_PER_S
 from hli_bench.bench import build, state
 from hli_bench.bench.config import MachineConfig, PlcConfig
-from hli_bench.bench.faceless import nothing_to_probe
 from hli_bench.bench.folder import load
 from hli_bench.bench.plc_ports import LocalPlc, loaded
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.bench.standstill import Standstill
+from hli_bench.bench.unprobed import nothing_to_probe
 from hli_bench.kernel.decoder import WITHOUT_MOTION
 from hli_bench.kernel.records import Emitted
 from hli_bench.laws import native
@@ -78,7 +78,7 @@ class Bench:
             raise InputError(f"settings {settings!r}: expected a mapping of keys to values")
         if isinstance(plc, str | Path):
             raise InputError(f"plc {str(plc)!r}: expected a list of scripts")
-        self.config: MachineConfig = load(machine, settings or {})
+        self.config: MachineConfig = load(machine, settings or {}, with_plcs=plc is None)
         for note in self.config.notes:
             if note.severity is Severity.WARNING:
                 on_note(f"warning: {note}")
@@ -220,7 +220,7 @@ class Bench:
                 *(f"motion was held: {element}" for element in holding),
                 *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
                 *self._without_plc(),
-                *nothing_to_probe(self.config, variables, measured, collector.errors),
+                *nothing_to_probe(self.config, variables, measured, collector.errors, self.kernel.in_vain),
             ),
             lateness=self._pace.take_part() if self._pace else None,
         )

@@ -115,7 +115,7 @@ class Drives:
 def main(pipe: Pipe, arguments: Sequence[str]) -> None:
     """Build the machine side and serve."""
     machine, settings, can, realtime = arguments
-    config = load(machine, json.loads(settings))
+    config = load(machine, json.loads(settings), with_plcs=False)
     # What the telegrams say, as numbers; the other fields are the kernel's and mean nothing here.
     axis = np.zeros(len(config.axes), AXIS)
     side = build.machine_side(config, axis)

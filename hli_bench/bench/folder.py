@@ -53,8 +53,10 @@ def machine_folder(machine: str | Path) -> Path:
     return shipped
 
 
-def load(machine: str | Path, overrides: Mapping[str, object] | None = None) -> MachineConfig:
-    """Return the machine of that name or folder with dotted-key overrides on top.
+def load(
+    machine: str | Path, overrides: Mapping[str, object] | None = None, *, with_plcs: bool = True
+) -> MachineConfig:
+    """Return the machine of that name or folder with dotted-key overrides on top, its PLC tasks only `with_plcs`.
 
     Raises InputError naming file (or --set), line, key, value and what is permitted, with everything that is
     wrong in one text; NotEmulated for parameter values and faults that are not built.
@@ -64,7 +66,7 @@ def load(machine: str | Path, overrides: Mapping[str, object] | None = None) -> 
     text = toml_text(file)
     given = toml_values(text, str(file))
     texts = tuple(map(_list_text, _list_files(folder, text)))
-    loader = _Loader(folder, given, override(given, overrides or {}))
+    loader = _Loader(folder, given, override(given, overrides or {}), with_plcs=with_plcs)
     plain = _plain(folder, text, texts)
     if plain is not None:
         loader.begin_with(plain)
@@ -115,6 +117,8 @@ class _Loader:
     """The same with overrides on top."""
     texts: Mapping[Path, str | None] = field(default_factory=dict)
     """Texts of list files that have been read already."""
+    with_plcs: bool = True
+    """The machine's own PLC tasks are wanted."""
     base: MachineConfig | None = None
     changed: Sequence[str] = ()
     """Paths whose values differ from those of `base`."""
@@ -181,7 +185,7 @@ class _Loader:
             terminals=kept.terminals
             if (kept := self._untouched("terminal.", "cycle_us"))
             else self._terminals(),
-            plcs=self._plcs(),
+            plcs=self._plcs() if self.with_plcs else (),
             faults=kept.faults if (kept := self._untouched("fault[")) else self._faults(),
             notes=tuple(self.notes),
         )

@@ -83,12 +83,22 @@ class Result:
         return self.lateness.late if self.lateness else 0
 
     @property
+    def worst_lateness_us(self) -> float:
+        """How far behind its time the worst cycle began, us."""
+        return self.lateness.figures()["worst_lateness_us"] if self.lateness else 0.0
+
+    @property
+    def lateness_histogram(self) -> Sequence[Mapping[str, Any]]:
+        """How many cycles began how far behind their time; empty in free pace."""
+        return self.lateness.figures()["lateness_histogram"] if self.lateness else ()
+
+    @property
     def completed(self) -> bool:
         """The program ended with M02 or M30."""
         return self.status == "completed"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what `--result` writes; of a bench in real pace also how it kept its cycle."""
+        """Return what `--result` writes, and `notes`; of a bench in real pace also how it kept its cycle."""
         found = asdict(self)
         del found["lateness"]
         return found | (self.lateness.figures() if self.lateness else {})

@@ -21,7 +21,7 @@ from hli_bench.shells.processes import work
 def main(pipe: Pipe, arguments: Sequence[str]) -> None:
     """Build the terminals and serve until the pipe closes."""
     machine, settings = arguments
-    config = load(machine, json.loads(settings))
+    config = load(machine, json.loads(settings), with_plcs=False)
     built = plant.build(config.plant, config.channels())
     rows: MachineRows = built.rows
     terminals = build.terminals(config, rows.channel)

@@ -100,7 +100,7 @@ def json_object(query: zenoh.Query) -> dict[str, Any]:
     """Return the JSON object in a query's payload. Raises InputError when it is something else."""
     try:
         found = json.loads(payload(query))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f"no JSON: {error}") from error
     if not isinstance(found, dict):
         raise InputError("a JSON object expected")

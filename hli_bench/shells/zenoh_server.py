@@ -41,6 +41,8 @@ from hli_bench.wire.images import TerminalLayout
 
 COMMANDS: Final = "/commands"
 """End of the key of a PLC's commands."""
+LONGEST_PERIOD_US: Final = 3_600_000_000
+"""Of a PLC that attaches: an hour (decided here)."""
 STRANGERS: Final = 64
 """So many names of clients that write without being attached are remembered, each to be told once."""
 LOOKS: Final = 1000
@@ -359,14 +361,19 @@ class HliServer:
 
     def _on_attach(self, query: zenoh.Query) -> None:
         path, plc = self._path(query), _plc(query)
-        reason, period = "", 0
+        period: Any
         try:
-            period = int(json_object(query)["period_us"])
-        except (InputError, KeyError, TypeError, ValueError):
+            period = json_object(query).get("period_us")
+        except InputError:
+            period = None
+        if isinstance(period, float) and period.is_integer():
+            period = int(period)
+        if isinstance(period, bool) or not isinstance(period, int):
             reason = 'JSON {"period_us": whole number} expected'
-        if not reason and (period <= 0 or "*" in path):
-            reason = "a period above 0 and the name of one PLC expected"
-        reason = reason or self._not_admitted(plc)
+        elif not 0 < period <= LONGEST_PERIOD_US or "*" in path:
+            reason = f"a period above 0, up to {LONGEST_PERIOD_US}, and the name of one PLC expected"
+        else:
+            reason = self._not_admitted(plc)
         if reason:
             Request(**self._asked(path, query)).refuse(reason)
             return

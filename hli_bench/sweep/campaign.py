@@ -313,7 +313,7 @@ class _Reader:
         """Load the machine with these settings; an error about one of them stands at its line."""
         taken = {key: value for key, value in settings.items() if not key.startswith(PROGRAM)}
         try:
-            config = load(campaign.job.machine, taken)
+            config = load(campaign.job.machine, taken, with_plcs=campaign.job.plc is None)
             self._scripts |= {plc.script for plc in config.plcs}
         except InputError as error:
             if error.file and error.file != SET:
@@ -380,7 +380,7 @@ def _drive_files(campaign: Campaign, machine: MachineConfig) -> set[Path]:
 def _digests(campaign: Campaign, scripts: Collection[Path]) -> dict[str, str]:
     """Return a digest of each part of a campaign and of the files that it names; `scripts` of the machine."""
     job = campaign.job
-    machine = replace(load(job.machine), folder=Path(), plcs=(), notes=())
+    machine = replace(load(job.machine, with_plcs=False), folder=Path(), notes=())
     used = scripts if job.plc is None else [Path(name) for name in job.plc]
     parts: dict[str, Any] = {
         "program": job.text,

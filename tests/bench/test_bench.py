@@ -49,6 +49,14 @@ def test_the_measuring_type_of_the_channel_list_is_that_of_a_program_that_sets_n
     assert (listed.measurements, listed.variables) == (programmed.measurements, programmed.variables)
 
 
+@pytest.mark.parametrize("processes", [False, True])
+def test_what_is_wrong_with_plcs_that_are_replaced_does_not_matter(processes: bool) -> None:
+    with pytest.raises(InputError, match=r"plc\[0\]\.period_us: 1000 is not a multiple of cycle_us = 2000"):
+        Bench("demo", {"cycle_us": 2000})
+    with Bench("demo", {"cycle_us": 2000}, plc=[], processes=processes) as bench:
+        assert bench.run("N10 G01 X1 F600\nN20 M30\n").completed
+
+
 DYING = """
 from hli_bench.plc import Plc
 

@@ -470,7 +470,14 @@ def test_a_plc_that_is_not_attached_is_told_so(bench: SmallBench, elsewhere: Any
     assert bench.server.refused == 1
 
 
-@pytest.mark.parametrize("question", ['{"period_us": 0}', "{}", "[]", "now", '{"period_us": "x"}'])
+@pytest.mark.parametrize(
+    "question",
+    [
+        *('{"period_us": 0}', "{}", "[]", "now", '{"period_us": "x"}', '{"period_us": "1000"}'),
+        *('{"period_us": true}', '{"period_us": 1500.7}', '{"period_us": 1e400}', '{"period_us": 1e18}'),
+        "[" * 100_000,
+    ],
+)
 def test_an_attach_that_makes_no_sense_is_refused(bench: SmallBench, elsewhere: Any, question: str) -> None:
     ((_, reason, _),) = ask(bench, elsewhere, plain_get, "demo/plc/p/attach", question.encode())
     assert b"expected" in reason

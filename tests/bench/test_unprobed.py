@@ -20,6 +20,21 @@ def test_a_machine_without_a_face_is_remarked(settings: dict[str, object], error
 
 
 @pytest.mark.parametrize(
+    ("signal", "units"),
+    [("PLC", ["probing_signal"]), ("PLC_TIMESTAMP", ["probing_signal", "timestamp"]), ("DRIVE", [])],
+)
+def test_a_signal_that_no_plc_serves_is_remarked(signal: str, units: list[str]) -> None:
+    face = {"plant.probe.Z.face_mm": 297, "plant.probe.Z.material": "below"}
+    with Bench("demo", face | {"axis.Z.kenngr.measure.signal": signal}, plc=[]) as bench:
+        result = bench.run(MEASURES)
+    assert result.completed
+    assert result.notes == tuple(
+        f"axis Z measured nothing, as no PLC serves ax/3/lr_mc_control/{unit}: ax/3/head/plc_present_w is FALSE"
+        for unit in units
+    )
+
+
+@pytest.mark.parametrize(
     ("program", "settings"),
     [
         (MEASURES, {"plant.probe.Z.face_mm": 298.5, "plant.probe.Z.material": "below"}),

@@ -3,6 +3,7 @@
 import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from datetime import date
 from functools import lru_cache
 from itertools import count, takewhile
 from pathlib import Path
@@ -130,12 +131,15 @@ class _Loader:
     values: dict[str, Plain] = field(default_factory=dict)
     lists: dict[str, dict[str, Given]] = field(default_factory=dict)
     """List parameters that stand in machine.toml or an override, by owner (`channel`, `axis.Z`)."""
+    places: dict[str, Mapping[str, Given]] = field(default_factory=dict)
+    """Where the list parameters of each owner stand."""
     refused: list[str] = field(default_factory=list)
     """Parameter values that the bench cannot emulate."""
 
     def begin_with(self, plain: "_Loader") -> None:
         """Take over what the loader of the same folder without overrides has found."""
         self.texts = plain.texts
+        self.places = dict(plain.places)
         self.base = plain.machine
         differ = [path for path, given in self.given.items() if plain.given.get(path) is not given]
         self.changed = [*differ, *(path for path in plain.given if path not in self.given)]
@@ -248,7 +252,8 @@ class _Loader:
         try:
             self.values[path] = key.accept(given.value)
         except (ValueError, OverflowError):
-            self._fail(given, f"{path}: {given.value!r} is not valid, expected {key.expected()}")
+            value = str(given.value) if isinstance(given.value, date) else repr(given.value)
+            self._fail(given, f"{path}: {value} is not valid, expected {key.expected()}")
 
     def _fail(self, given: Given | None, message: str) -> None:
         self.errors.append(given.error(message) if given else InputError(message, str(self._file())))
@@ -283,6 +288,7 @@ class _Loader:
                 continue
             changes.update(taken)
             places.update(dict.fromkeys(taken, given))
+        self.places[owner] = places
         tree = built(cast("Any", cls), tuple((found.values | changes).items()), text, repr(changes))
         for path, finding in tree.findings:
             self._found(places[path].error(finding.message), finding.severity)
@@ -344,7 +350,7 @@ class _Loader:
                 self._fail(self.given.get(f"axis.{axis.name}.start_mm"), message)
 
     def _place(self, axis: str, path: str) -> Given | None:
-        return self.lists.get(f"axis.{axis}", {}).get(path) or self.given.get(f"axis.{axis}.{path}")
+        return self.places.get(f"axis.{axis}", {}).get(path) or self.given.get(f"axis.{axis}.{path}")
 
     def _plant(self, axes: Sequence[AxisConfig]) -> PlantSettings:
         kept = self._untouched("plant.probe.")

@@ -192,6 +192,25 @@ def test_everything_wrong_is_named_with_file_and_line(tmp_path: Path) -> None:
     assert len(lines) == len(set(lines))
 
 
+def test_a_number_that_two_axes_have_is_named_where_the_list_gives_it(tmp_path: Path) -> None:
+    text = '[axis.X]\nlist = "x.lis"\n[axis.Z]\nlist = "z.lis"\n'
+    folder = _machine(tmp_path, text, x="kopf.achs_nr 1\n", z="# Z\nkopf.achs_nr 1\n")
+    for overrides in ({}, {"axis.X.start_mm": 1.0}):
+        with pytest.raises(
+            InputError, match=r"axis\.Z\.kopf\.achs_nr: 1 is already that of axis X"
+        ) as caught:
+            load(folder, overrides)
+        assert f"{folder}/z.lis:2: axis.Z.kopf.achs_nr: " in str(caught.value)
+
+
+def test_a_date_that_no_bench_has_is_shown_as_it_was_written(tmp_path: Path) -> None:
+    folder = _machine(tmp_path, "dc_epoch = 1990-01-01\n[axis.X]\nstart_mm = 1\n")
+    with pytest.raises(
+        InputError, match=r"dc_epoch: 1990-01-01 is not valid, expected instant .* 2000-01-01 to"
+    ):
+        load(folder)
+
+
 def test_a_missing_list_names_the_line_that_asks_for_it(tmp_path: Path) -> None:
     folder = _machine(tmp_path, '[axis.X]\nlist = "nowhere.lis"\n')
     with pytest.raises(InputError, match=r"axis\.X\.list: 'nowhere\.lis' is not a readable file") as caught:

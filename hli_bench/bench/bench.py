@@ -1,5 +1,6 @@
 """The public class: a machine that runs NC programs."""
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
@@ -7,12 +8,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, Self
 
+from hli_bench.base.endpoints import endpoint
 from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.time import NS_PER_S
 from hli_bench.bench import build, state
 from hli_bench.bench.config import MachineConfig, PlcConfig
 from hli_bench.bench.folder import load
 from hli_bench.bench.plc_ports import LocalPlc, loaded
+from hli_bench.bench.program import opened
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.bench.standstill import Standstill
 from hli_bench.bench.unprobed import nothing_to_probe
@@ -76,6 +79,10 @@ class Bench:
             raise InputError(f"pace {pace!r}: expected free or real")
         if settings is not None and not isinstance(settings, Mapping):
             raise InputError(f"settings {settings!r}: expected a mapping of keys to values")
+        if not isinstance(machine, str | Path):
+            raise InputError(f"machine {machine!r}: expected a name or a folder")
+        if zenoh is not None:
+            endpoint(zenoh)
         if isinstance(plc, str | Path):
             raise InputError(f"plc {str(plc)!r}: expected a list of scripts")
         self.config: MachineConfig = load(machine, settings or {}, with_plcs=plc is None)
@@ -152,7 +159,12 @@ class Bench:
         what is not built; errors of the emulated CNC stand in the result. When it is interrupted (Ctrl-C),
         `interrupted` holds the result so far.
         """
-        lines, name = _program(program, name)
+        if limit_s is not None and not 0.0 < limit_s < math.inf:
+            raise InputError(f"limit_s {limit_s!r}: expected seconds above 0")
+        with opened(program, name) as (lines, known_as):
+            return self._run(lines, known_as, limit_s)
+
+    def _run(self, lines: Iterable[str], name: str, limit_s: float | None) -> Result:
         watch = Stopwatch()
         self.start_up()
         collector = Collector(self.kernel.setup.axes)
@@ -393,23 +405,3 @@ class _Tap:
             return
         first = refusals[0]
         raise InputError(f"plc {first.writer}: {first.path}: {first.reason}")
-
-
-def _program(program: str | Path | Iterable[str], name: str) -> tuple[Iterable[str], str]:
-    """Return the lines of a program and the name under which its errors are reported."""
-    if isinstance(program, str) and "\n" not in program and program.lower().endswith(".nc"):
-        program = Path(program)
-    if isinstance(program, Path):
-        if not program.is_file():
-            raise InputError("no such NC program", file=str(program))
-        return _lines_of(program), name or str(program)
-    if isinstance(program, str):
-        return program.splitlines(), name or "program"
-    return program, name or "program"
-
-
-def _lines_of(path: Path) -> Iterable[str]:
-    """Yield the lines of a file as they are needed."""
-    with path.open(encoding="utf-8", errors="replace") as file:
-        for line in file:
-            yield line.rstrip("\n")

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from hli_bench.base.endpoints import DEFAULT_ENDPOINT
 from hli_bench.bench.bench import Bench
 from hli_bench.runtime.engine import Observer
-from hli_bench.shells.zenoh_session import DEFAULT_ENDPOINT
 
 
 def serve(

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from hli_bench.base import endpoints
+from hli_bench.base.endpoints import DEFAULT_ENDPOINT
 from hli_bench.base.errors import InputError, NotEmulated
 from hli_bench.base.loading import data_file
 
@@ -13,16 +15,8 @@ Commands = Any
 """The subparsers action of argparse, whose class is private."""
 
 DEFAULT_MACHINE: Final = "demo"
-DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
-"""Where `serve` listens and clients connect unless told otherwise."""
 NO_PLC: Final = "none"
 BUS: Final = re.compile(r"inproc|socketcan:\S+|socketcand:\S+:\d+")
-ENDPOINT: Final = re.compile(
-    r"(?:(?:tcp|udp|ws|tls|quic)/(?:\[[^\s\[\]]+\]|[^\s\[\]:/?#]+):(?P<port>\d{1,5})|unixsock-stream/[^\s?#]+)"
-    r"(?:\?[^\s#]*)?(?:#\S*)?"
-)
-"""PROTOCOL/ADDRESS as Zenoh takes it, with what may follow: `?metadata`, `#config`."""
-LAST_PORT: Final = 65535
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,13 +104,10 @@ def bus(text: str) -> str:
 
 def endpoint(text: str) -> str:
     """Return the text of `--zenoh` or `--connect` if it has the form of an endpoint."""
-    found = ENDPOINT.fullmatch(text)
-    if found is None or int(found["port"] or 0) > LAST_PORT:
-        raise argparse.ArgumentTypeError(
-            f"{text!r}: expected PROTOCOL/HOST:PORT, e.g. {DEFAULT_ENDPOINT} "
-            f"(also udp, ws, tls, quic; port up to {LAST_PORT}), or unixsock-stream/FILE"
-        )
-    return text
+    try:
+        return endpoints.endpoint(text)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(error.message) from error
 
 
 def bench_options(arguments: argparse.Namespace) -> BenchOptions:

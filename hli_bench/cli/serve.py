@@ -3,7 +3,8 @@
 import argparse
 import sys
 
-from hli_bench.cli.options import DEFAULT_ENDPOINT, Commands, add_bench, bench_options
+from hli_bench.base.endpoints import DEFAULT_ENDPOINT
+from hli_bench.cli.options import Commands, add_bench, bench_options
 
 
 def add(commands: Commands) -> None:

@@ -104,9 +104,12 @@ def add(commands: Commands) -> None:
 def _seconds(text: str) -> int:
     """Return seconds as ns."""
     try:
-        return round(float(text) * NS_PER_S)
-    except (ValueError, OverflowError) as error:
-        raise argparse.ArgumentTypeError(f"{text!r}: expected seconds, e.g. 1.25") from error
+        seconds = round(float(text) * NS_PER_S)
+    except (ValueError, OverflowError):
+        seconds = -1
+    if seconds < 0:
+        raise argparse.ArgumentTypeError(f"{text!r}: expected seconds from 0 on, e.g. 1.25")
+    return seconds
 
 
 def _reader(file: str) -> "TraceReader":
@@ -136,6 +139,8 @@ def show_trace(arguments: argparse.Namespace) -> int:
         if name not in known:
             raise InputError(f"--axis {name}: expected one of {', '.join(known)}", file=arguments.file)
     end = sys.maxsize if arguments.end is None else arguments.end
+    if arguments.begin > end:
+        raise InputError("lies behind --to", file="--from")
     selection = Selection(
         channels=frozenset(arguments.channel or CHANNELS),
         begin=arguments.begin,

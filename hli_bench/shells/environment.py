@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from hli_bench.base.endpoints import DEFAULT_PORT
 from hli_bench.laws import cache
 from hli_bench.shells.realtime import PRIORITY
 
@@ -17,7 +18,7 @@ LEAST_PYTHON: Final = (3, 11)
 LEAST_LOCKED_BYTES: Final = 1 << 30
 """What a paced bench may lock, so that no page fault delays a cycle; `demo` has 0.4 GB of addresses (decided here)."""
 
-PORTS: Final[Mapping[int, str]] = {7447: "Zenoh", 29536: "socketcand"}
+PORTS: Final[Mapping[int, str]] = {DEFAULT_PORT: "Zenoh", 29536: "socketcand"}
 """The loopback ports a bench serves by default, and for what."""
 
 LOOPBACK: Final = "127.0.0.1"

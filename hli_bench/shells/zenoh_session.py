@@ -9,7 +9,6 @@ import zenoh
 
 from hli_bench.base.errors import EnvironmentLacks
 
-DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
 PLC_LEASE_MS: Final = 500
 """A PLC's session that says nothing for so long is gone: this is how a frozen PLC is noticed."""
 LEASE_MS: Final = 30_000

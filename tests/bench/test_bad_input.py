@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from hli_bench.base.endpoints import endpoint
 from hli_bench.base.loading import data_file
 from hli_bench.cli.main import main
-from hli_bench.cli.options import endpoint
 from hli_bench.shells.zenoh_client import HliClient
 
 UNIT = "ax/3/lr_mc_control/probing_signal"

@@ -1,6 +1,7 @@
 """What a bench does when something goes wrong around a program."""
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -129,11 +130,36 @@ def test_a_machine_chooses_what_its_drives_do_at_a_following_error(reaction: str
         ({"pace": "slow"}, "pace 'slow': expected free or real"),
         ({"settings": ["cycle_us=1000"]}, "settings .*: expected a mapping"),
         ({"plc": "demo.py"}, r"plc 'demo\.py': expected a list of scripts"),
+        ({"zenoh": "foo"}, "'foo': expected PROTOCOL/HOST:PORT"),
+        ({"machine": 3}, "machine 3: expected a name or a folder"),
     ],
 )
 def test_arguments_that_make_no_bench(options, message) -> None:
     with pytest.raises(InputError, match=message):
-        Bench("demo", **options)
+        Bench(**options)
+
+
+@pytest.mark.parametrize(
+    ("program", "limit_s", "message"),
+    [
+        (None, None, "program None: expected NC text, a path or lines"),
+        (b"N10 M30\n", None, r"program b'N10 M30\\n': expected NC text, a path or lines"),
+        ("N10 M30\n", 0.0, r"limit_s 0\.0: expected seconds above 0"),
+        ("N10 M30\n", float("nan"), "limit_s nan: expected seconds above 0"),
+    ],
+)
+def test_arguments_that_make_no_run(program, limit_s, message) -> None:
+    with Bench("demo", plc=[]) as bench, pytest.raises(InputError, match=message):
+        bench.run(program, limit_s=limit_s)
+
+
+def test_the_file_of_a_program_that_was_aborted_is_closed(tmp_path) -> None:
+    program = tmp_path / "long.nc"
+    program.write_text(LONG)
+    with Bench("demo", plc=[]) as bench:
+        assert bench.run(program, limit_s=0.5).status == "aborted"
+        opened = [str(link.readlink()) for link in Path("/proc/self/fd").iterdir() if link.exists()]
+        assert str(program) not in opened
 
 
 def test_a_bench_whose_plc_cannot_be_loaded_stays_refused(tmp_path) -> None:

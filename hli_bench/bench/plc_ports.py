@@ -52,8 +52,9 @@ class LocalPlc:
         try:
             return WATCHDOG.limited(ANSWER_S, self._task.step, cycle, dc_ns, image, io)
         except Overdue as overdue:
+            where = "its start" if self._task.starting else f"cycle {cycle}"
             self._on_note(
-                f"PLC {self.name} has not returned from cycle {cycle} within {ANSWER_S:g} s "
+                f"PLC {self.name} has not returned from {where} within {ANSWER_S:g} s "
                 f"({self._task.place(overdue)}): it takes part no more"
             )
             return None

@@ -48,6 +48,11 @@ class Task:
         self._start = getattr(script, "start", None)
         self._paths = [element.path for element in layout.elements]
 
+    @property
+    def starting(self) -> bool:
+        """The script has not begun, or is in its `start`."""
+        return self._start is not None
+
     def place(self, error: BaseException) -> str:
         """Return file and line of the script at which an error left it, the file alone when it had left it before."""
         line = line_of(error, self._file)

@@ -266,6 +266,17 @@ def test_a_script_that_does_not_return_is_a_plc_that_stopped(tmp_path, monkeypat
         assert bench.run("%b\nN10 G04 0.1\nM30\n").completed
 
 
+def test_a_script_that_does_not_return_from_its_start_is_told_so(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(plc_ports, "ANSWER_S", 0.3)
+    script = tmp_path / "slow.py"
+    script.write_text(ENDLESS.format(step="pass").replace("def cycle", "def start").replace("> 20", "> 0"))
+    script.write_text(script.read_text() + "\n    def cycle(self, hli, io): ...\n")
+    notes: list[str] = []
+    with Bench("demo", plc=[script], on_note=notes.append) as bench:
+        bench.run("%a\nN10 G04 1\nM30\n")
+    assert notes[0].startswith("PLC slow has not returned from its start within 0.3 s (")
+
+
 def test_a_slow_terminal_does_not_make_a_bench_without_plc_pass_frames() -> None:
     with Bench("demo", {"terminal.cams.period_us": 4000}, plc=[]) as bench:
         bench.start_up()

@@ -144,7 +144,8 @@ def switches(
         change = 1 if switch[s]["state"] else -1
         put_pending(pending, edges, at, switch[s]["signal"], change)
         bounce = switch[s]["bounce_ns"]
-        if bounce > 0:
+        # A bounce is left out before a change of the switch itself, for which each keeps a place, would be.
+        if bounce > 0 and edges[1] + 2 + switch.shape[0] <= pending.shape[0]:
             put_pending(pending, edges, at + bounce // 2, switch[s]["signal"], -change)
             put_pending(pending, edges, at + bounce, switch[s]["signal"], change)
     end_ns = begin_ns + step_ns

@@ -125,6 +125,21 @@ def test_bounce_is_a_train_of_edges_that_ends_at_the_new_level(rig: Any, axis: A
     assert bench.rows.signal[0]["operated"] == 0
 
 
+def test_a_switch_that_chatters_faster_than_it_bounces_ends_as_it_stands(rig: Any, axis: Any) -> None:
+    bench = rig(
+        [axis(face=Face(mm=1.0, material="above"), kv_per_s=150.0)], probe=Probe(bounce_us=100_000.0)
+    )
+    bench.move(10.0, 100)
+    bench.wait(300)
+    bench.move(100.0, 5)
+    for turn in range(100):
+        bench.move(100.0 if turn % 2 else -100.0, 8)
+    assert len(bench.edges()) > 30
+    bench.wait(500)
+    row = bench.rows.signal[0]
+    assert (row["operated"], row["level"], bench.rows.switch[0]["state"]) == (1, 1, 1)
+
+
 def test_spread_is_seeded_and_leaves_without_chatter(rig: Any, axis: Any) -> None:
     def touches(seed: int) -> list[int]:
         bench = rig([axis(face=Face(mm=0.5, material="above"))], probe=Probe(sigma_um=5.0), seed=seed)

@@ -78,9 +78,9 @@ def test_an_interface_that_is_down_is_named() -> None:
         subprocess.run(["ip", "link", "set", "vcan0", "down"], check=True)
         try:
             with pytest.raises(EnvironmentLacks, match="CAN interface vcan0: "):
-                bus.send(frame)
-            with pytest.raises(EnvironmentLacks, match="CAN interface vcan0: "):
                 bus.receive()
+            with pytest.raises(EnvironmentLacks, match="CAN interface vcan0: "):
+                bus.send(frame)
         finally:
             subprocess.run(["ip", "link", "set", "vcan0", "up"], check=True)
         bus.send(frame)

@@ -126,9 +126,7 @@ def test_bounce_is_a_train_of_edges_that_ends_at_the_new_level(rig: Any, axis: A
 
 
 def test_a_switch_that_chatters_faster_than_it_bounces_ends_as_it_stands(rig: Any, axis: Any) -> None:
-    bench = rig(
-        [axis(face=Face(mm=1.0, material="above"), kv_per_s=150.0)], probe=Probe(bounce_us=100_000.0)
-    )
+    bench = rig([axis(face=Face(mm=1.0, material="above"), kv_per_s=150.0)], probe=Probe(bounce_us=100_000.0))
     bench.move(10.0, 100)
     bench.wait(300)
     bench.move(100.0, 5)

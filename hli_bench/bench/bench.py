@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 START_UP_CYCLES: Final = 2000
 """Cycles within which all drives must have come into operation."""
-WITHOUT_MOTION_PACED: Final = 20
-"""Blocks without motion for which a cycle passes in real pace: they take a fifth of a ms (decided here)."""
+WITHOUT_MOTION_PACED: Final = 50
+"""Blocks without motion in a row for which a cycle passes in real pace: they take half a ms (decided here)."""
 FOREVER: Final = 1 << 62
 IDLE_S: Final = 0.2
 """Longest wait for a client while time stands still."""
@@ -232,7 +232,9 @@ class Bench:
                 *(f"motion was held: {element}" for element in holding),
                 *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
                 *self._without_plc(),
-                *nothing_to_probe(self.config, variables, measured, collector.errors, self.kernel.in_vain),
+                *nothing_to_probe(
+                    self.config, variables, measured, collector.errors, self.kernel.channel.unserved
+                ),
             ),
             lateness=self._pace.take_part() if self._pace else None,
         )

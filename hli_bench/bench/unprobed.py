@@ -1,8 +1,9 @@
 """Notices that a measuring run could not find anything: the plant has no face for the probe, or no PLC tells of it."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
+from hli_bench.base.ids import AxisIndex
 from hli_bench.bench.config import AxisConfig, MachineConfig
 from hli_bench.bench.result import Error, Measurement
 from hli_bench.kernel.position_controller.measurement import FIXED_STOP_TYPE
@@ -11,10 +12,6 @@ from hli_bench.manual.axis.words import ProbingSignal
 from hli_bench.manual.errors.path_interpolator import FIXED_STOP_NOT_FOUND
 from hli_bench.plant.settings import PROBE
 
-UNITS: Final = {
-    ProbingSignal.PLC: ("probing_signal",),
-    ProbingSignal.PLC_TIMESTAMP: ("probing_signal", "timestamp"),
-}
 RUN_STARTED: Final = ("V.A.MERF", "V.A.MEIN")
 """Variables that a result has of every axis of a measuring run, whatever came of it."""
 
@@ -24,12 +21,12 @@ def nothing_to_probe(
     variables: Mapping[str, float],
     found: Sequence[Measurement],
     errors: Sequence[Error],
-    in_vain: Callable[[str], str],
+    unserved: Mapping[AxisIndex, Sequence[str]],
 ) -> list[str]:
     """Return a remark for each axis that was to probe, and could not: no face at all, or no PLC that says so.
 
-    `in_vain` tells why what is written to an element counts for nothing. Where any axis has a face and a PLC serves the
-    unit nothing is said: why the face was not met, the machine's settings do not tell.
+    `unserved` names the control units of each axis that no PLC served, and why. Where any axis has a face and a PLC
+    serves the units nothing is said: why the face was not met, the machine's settings do not tell.
     """
     settled = {one.axis for one in found} | {
         one.axis for one in errors if one.id == FIXED_STOP_NOT_FOUND.number
@@ -50,17 +47,10 @@ def nothing_to_probe(
             for axis in to_probe
         ]
     return [
-        f"axis {axis.name} measured nothing, as no PLC serves {unit}: {reason}"
+        f"axis {axis.name} measured nothing, as no PLC serves {unit}"
         for axis in to_probe
-        for unit in _units(axis)
-        if (reason := in_vain(f"{unit}/command_w"))
+        for unit in unserved.get(axis.index, ())
     ]
-
-
-def _units(axis: AxisConfig) -> list[str]:
-    """Return the control units by which a PLC tells of the probe, for a source that needs one."""
-    names = UNITS.get(effective_signal(axis.params.kenngr), ())
-    return [f"ax/{axis.number}/lr_mc_control/{name}" for name in names]
 
 
 def _waits_for_a_face(config: MachineConfig, axis: AxisConfig) -> bool:

@@ -25,6 +25,7 @@ from hli_bench.kernel.blocks import (
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.decoder import Decoder
 from hli_bench.kernel.drive_manager.objects import ObjectChannel
+from hli_bench.kernel.hindrances import unserved
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.position_controller import measurement
 from hli_bench.kernel.position_controller.measurement import Probe
@@ -71,6 +72,8 @@ class Channel:
         self._delivered: Counter[AxisIndex] = Counter()
         self.measured: list[tuple[MeasuredValue, float]] = []
         """Every value this program has measured, with its V.A.MEAS.PCS.VALUE in mm."""
+        self.unserved: dict[AxisIndex, list[str]] = {}
+        """Units that no PLC served when the last measuring run of an axis began and when it ended, and why."""
         self._source = _NOWHERE
         self._segment_source: dict[int, Source] = {}
         self.running = False
@@ -94,6 +97,7 @@ class Channel:
         self._latched.clear()
         self._delivered.clear()
         self.measured.clear()
+        self.unserved.clear()
         core = self._core
         self._probes = {axis.index: measurement.default_probe(core, axis.index) for axis in core.setup.axes}
         self._error_no_signal = core.setup.channel.meas_error_no_signal
@@ -241,6 +245,8 @@ class Channel:
                 self._end(completed=True)
 
     def _measuring(self, block: MeasuringRun) -> Activity | None:
+        for axis in block.axes:
+            self.unserved[axis] = unserved(self._core, axis, self._probes[axis].signal)
         run = measurement.begin(self._core, block, self._probes, error_no_signal=self._error_no_signal)
         return None if run is None else Measuring(self._core, self._monitoring, run, self._take)
 
@@ -357,6 +363,8 @@ class Channel:
     def _take(self, run: measurement.Run) -> None:
         """Keep what a measuring run delivered; axes without a new value keep their old one."""
         for axis in run.block.axes:
+            now = unserved(self._core, axis, self._probes[axis].signal)
+            self.unserved[axis] = [unit for unit in self.unserved[axis] if unit in now]
             self._latched[axis] = run.before_target.get(axis, False)
         self._measured |= {axis: mm(value.acs_tenth_um) for axis, value in run.values.items()}
         self._delivered.update(run.values.keys())

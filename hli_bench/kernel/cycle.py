@@ -83,7 +83,7 @@ class Kernel:
     def start(self, lines: Iterable[str], name: str, without_motion: int = WITHOUT_MOTION) -> None:
         """Begin an NC program. Usage errors of its text come out of `decide`.
 
-        For so many blocks without motion a cycle passes.
+        For so many blocks without motion in a row a cycle passes.
         """
         axes = [
             DecoderAxis(axis.index, axis.name, axis.number, axis.kind, axis.params.kenngr.messachse)

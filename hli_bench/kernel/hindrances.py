@@ -1,6 +1,8 @@
 """What a PLC keeps from happening, in words for people: motion that it holds, commands of it that do not count."""
 
+from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.core import Core
+from hli_bench.kernel.position_controller.probing import source
 from hli_bench.laws.rows import JOG, SEGMENTS
 
 _CHANNEL = "ch/1/bahn_mc_control"
@@ -30,6 +32,12 @@ def holding(core: Core) -> list[str]:
 def unheard(core: Core) -> list[str]:
     """Return the control units with `enable_w` TRUE whose commands count for nothing, and why."""
     return [f"{unit.path}: {unit.unheard}" for unit in core.units.enabled() if unit.unheard]
+
+
+def unserved(core: Core, axis: AxisIndex, signal: str) -> list[str]:
+    """Return the control units by which a PLC tells of the probing signal and that it does not serve, and why."""
+    units = (core.unit(axis, name) for name in getattr(source(signal), "UNITS", ()))
+    return [f"{unit.path}: {unit.unheard}" for unit in units if unit.unheard]
 
 
 def in_vain(core: Core, member: str) -> str:

@@ -12,7 +12,7 @@ from typing import Final
 
 from hli_bench.base.endpoints import DEFAULT_PORT
 from hli_bench.laws import cache
-from hli_bench.shells.realtime import PRIORITY
+from hli_bench.shells.realtime import PRIORITY, give_back, take_fifo
 
 LEAST_PYTHON: Final = (3, 11)
 LEAST_LOCKED_BYTES: Final = 1 << 30
@@ -115,12 +115,11 @@ def real_time_priority() -> Finding:
     )
     if sys.platform != "linux":
         return Finding("real-time", False, f"{sys.platform} has no SCHED_FIFO", advice)
-    policy, parameter = os.sched_getscheduler(0), os.sched_getparam(0)
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
+        before = take_fifo()
     except OSError as error:
         return Finding("real-time", False, f"SCHED_FIFO: {_reason(error)}", advice)
-    os.sched_setscheduler(0, policy, parameter)
+    give_back(*before)
     return Finding("real-time", True, f"SCHED_FIFO with priority {PRIORITY} allowed", advice)
 
 

@@ -115,12 +115,11 @@ class Calm:
         """Put the calling thread under SCHED_FIFO; neither its children nor other threads."""
         if sys.platform != "linux":
             return f"real time: {sys.platform} has no SCHED_FIFO"
-        policy, parameter = os.sched_getscheduler(0), os.sched_getparam(0)
         try:
-            os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
+            before = take_fifo()
         except OSError as error:
             return f"real time: no SCHED_FIFO ({error.strerror}); {_ADVICE}"
-        self._closing.callback(_restore_policy, policy, parameter)
+        self._closing.callback(give_back, *before)
         return f"real time: SCHED_FIFO with priority {PRIORITY}"
 
     def _lock_memory(self) -> str:
@@ -153,8 +152,19 @@ def ask(*, realtime: bool) -> Calm:
     return calm
 
 
-def _restore_policy(policy: int, parameter: Any) -> None:
-    os.sched_setscheduler(0, policy, parameter)
+def take_fifo() -> tuple[int, Any]:
+    """Put the calling thread under SCHED_FIFO, not its children; return what to give back. Raises OSError."""
+    before = os.sched_getscheduler(0), os.sched_getparam(0)
+    os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
+    return before
+
+
+def give_back(policy: int, parameter: Any) -> None:
+    """Run as before `take_fifo`. Only root may clear the flag about children; it does no harm where it stays."""
+    try:
+        os.sched_setscheduler(0, policy, parameter)
+    except PermissionError:
+        os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameter)
 
 
 def _library() -> Any:

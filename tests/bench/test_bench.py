@@ -33,8 +33,17 @@ def test_blocks_without_motion_take_cycles_so_that_a_paced_bench_keeps_its_time(
     pace: str, cycles: int
 ) -> None:
     with Bench("demo", plc=[], pace=pace) as bench:
-        result = bench.run("N10 P1=1\n" * 200 + "N20 M30\n")
+        result = bench.run("N10 P1=1\n" * 500 + "N20 M30\n")
     assert (result.completed, result.cycles) == (True, cycles)
+
+
+def test_blocks_between_motion_do_not_change_it_in_real_pace() -> None:
+    program = ("N10 G91 G01 X0.5 F6000\n" + "N20 P1=1\n" * 20) * 20 + "N30 M30\n"
+    cycles = []
+    for pace in ("free", "real"):
+        with Bench("demo", plc=[], pace=pace) as bench:
+            cycles.append(bench.run(program).cycles)
+    assert cycles[0] == cycles[1]
 
 
 @pytest.mark.req("M-024")

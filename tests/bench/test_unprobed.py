@@ -34,6 +34,29 @@ def test_a_signal_that_no_plc_serves_is_remarked(signal: str, units: list[str]) 
     )
 
 
+BRIEF = """
+from hli_bench.plc import Plc
+
+class Brief(Plc):
+    cycles = 0
+
+    def cycle(self, hli, io):
+        self.cycles += 1
+        axis = hli.ax[3]
+        axis.head.plc_present_w = True
+        axis.lr_mc_control.release_feedhold.enable_w = axis.lr_mc_control.release_feedhold.command_w = True
+        axis.lr_mc_control.probing_signal.enable_w = axis.lr_mc_control.timestamp.enable_w = self.cycles < 400
+"""
+
+
+def test_a_unit_that_is_served_while_it_measures_is_not_remarked(tmp_path) -> None:
+    (tmp_path / "brief.py").write_text(BRIEF)
+    face = {"plant.probe.Z.face_mm": 200, "plant.probe.Z.material": "below"}
+    with Bench("demo", face, plc=[tmp_path / "brief.py"]) as bench:
+        result = bench.run("N20 G90 G100 Z298 F2000\nN30 G04 1\nN40 M30\n")
+        assert result.notes == ()
+
+
 @pytest.mark.parametrize(
     ("program", "settings"),
     [

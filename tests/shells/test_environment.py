@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from hli_bench.shells import environment
+from hli_bench.shells.realtime import ask
 
 
 @pytest.fixture
@@ -77,6 +78,25 @@ def test_the_interface_finding_agrees_with_what_the_kernel_lists() -> None:
 
 def test_no_can_interface_without_can_sockets() -> None:
     assert environment.can_sockets().ok or not environment.can_interfaces()
+
+
+def test_who_may_not_clear_the_flag_about_children_gets_the_schedule_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    allowed, flag = os.sched_setscheduler, os.SCHED_RESET_ON_FORK
+    before = os.sched_getscheduler(0)
+
+    def unprivileged(pid: int, policy: int, parameter: os.sched_param) -> None:
+        if os.sched_getscheduler(pid) & flag and not policy & flag:
+            raise PermissionError
+        allowed(pid, policy, parameter)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "sched_setscheduler", unprivileged)
+        environment.real_time_priority()
+        ask(realtime=True).close()
+    assert os.sched_getscheduler(0) & ~flag == before
+    allowed(0, before, os.sched_param(0))
 
 
 def test_trying_real_time_leaves_the_schedule_as_it_was() -> None:

@@ -21,7 +21,7 @@ _HASH = re.compile(r"#\s*([A-Z]+)", re.IGNORECASE)
 _SUBROUTINE = re.compile(r"%L\s", re.IGNORECASE)
 _RAPID: Final = {"0": True, "00": True, "1": False, "01": False}
 WITHOUT_MOTION: Final = 2000
-"""Blocks without motion for which a cycle passes (decided here): a loop may be endless."""
+"""Blocks without motion in a row for which a cycle passes (decided here): a loop may be endless."""
 _ABSOLUTE: Final = {"90": True, "91": False}
 
 
@@ -96,10 +96,12 @@ class Decoder:
         while (raw := next_line()) is not None:
             item = plain(raw)
             if isinstance(item, Line):
+                blocks = 0
                 yield item
                 continue
             blocks += 1
-            if blocks % without_motion == 0:
+            if blocks == without_motion:
+                blocks = 0
                 yield Idle()
             if item is None:
                 continue

@@ -11,6 +11,7 @@ from hli_bench.kernel.watches import Condition
 from hli_bench.manual.axis.words import Edge
 
 UNIT = "lr_mc_control/probing_signal"
+UNITS = (UNIT,)
 
 
 def _level(core: Core, axis: AxisIndex) -> bool | None:

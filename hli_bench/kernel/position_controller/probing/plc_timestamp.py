@@ -7,12 +7,14 @@ from hli_bench.base.ids import AxisIndex
 from hli_bench.base.time import Ns
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.position_controller import history
+from hli_bench.kernel.position_controller.probing import plc
 from hli_bench.kernel.position_controller.probing.plc import arm, blocked, disarm, event
 from hli_bench.manual.axis.words import Edge
 
 __all__ = ["arm", "blocked", "disarm", "event", "latched"]
 
 UNIT = "lr_mc_control/timestamp"
+UNITS = (plc.UNIT, UNIT)
 
 
 def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:

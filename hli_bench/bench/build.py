@@ -1,6 +1,6 @@
 """A machine's configuration becomes nodes: kernel, drives, plant, terminals."""
 
-from typing import Any
+from typing import Any, Final
 
 from hli_bench.base.errors import InputError
 from hli_bench.bench.config import MachineConfig
@@ -12,6 +12,9 @@ from hli_bench.plant import build as plant
 from hli_bench.runtime.machine_side import DriveNode, Forced, MachineSide
 from hli_bench.terminals.terminal import Terminal, type_of
 from hli_bench.wire.images import TerminalLayout
+
+FAULT: Final = "fault"
+"""What drives do at a following error unless they are told otherwise."""
 
 
 def kernel(config: MachineConfig) -> Kernel:
@@ -37,19 +40,11 @@ def kernel(config: MachineConfig) -> Kernel:
 def machine_side(config: MachineConfig, axis_rows: Rows) -> MachineSide:
     """Return drives, plant and terminals of a machine, all in one process; `axis_rows` hold the telegrams."""
     built = plant.build(config.plant, config.channels())
-    drives: list[DriveNode] = []
-    for axis in config.axes:
-        try:
-            model = drive_model(axis.drive)
-        except InputError as error:
-            raise InputError(f"axis.{axis.name}.drive: {error}") from error
-        options = {"following_error": axis.following_error}
-        drives.append(model.create(axis.name, axis.node_id, built.rows.servo[axis.index], options))
     return MachineSide(
         rows=built.rows,
         axis=axis_rows,
         pending=built.pending,
-        drives=drives,
+        drives=drives(config, built.rows.servo),
         terminals=terminals(config, built.rows.channel),
         signals=built.signals.names,
         cycle_ns=config.cycle_ns,
@@ -57,6 +52,19 @@ def machine_side(config: MachineConfig, axis_rows: Rows) -> MachineSide:
         dc_epoch_ns=config.dc_epoch_ns,
         forced=forced(config),
     )
+
+
+def drives(config: MachineConfig, servo: Rows) -> list[DriveNode]:
+    """Return the drives of a machine on their rows. Raises InputError that names whose model is wrong."""
+    built: list[DriveNode] = []
+    for axis in config.axes:
+        options = {} if axis.following_error == FAULT else {"following_error": axis.following_error}
+        try:
+            model = drive_model(axis.drive)
+            built.append(model.create(axis.name, axis.node_id, servo[axis.index], options))
+        except InputError as error:
+            raise InputError(f"axis.{axis.name}.drive: {error}") from error
+    return built
 
 
 def forced(config: MachineConfig) -> list[Forced]:

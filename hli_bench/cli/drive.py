@@ -9,7 +9,7 @@ from typing import Final
 
 from hli_bench.base.errors import InputError
 from hli_bench.base.loading import module
-from hli_bench.bench.drive_models import eds_of
+from hli_bench.bench.drive_models import drive_model, eds_of
 from hli_bench.cli import tables
 from hli_bench.cli.options import Commands
 from hli_bench.protocols.canopen.cia402_objects import lacking
@@ -44,7 +44,7 @@ def show_model(arguments: argparse.Namespace) -> int:
     """Print the object dictionary. Raises InputError for an unknown model."""
     name = arguments.model if "." in arguments.model else f"{MODELS}.{arguments.model}"
     try:
-        path = eds_of(name)
+        path = eds_of(drive_model(name))
     except InputError as error:
         raise InputError(f"{error}; supplied models: {', '.join(supplied_models())}") from error
     if path is None:

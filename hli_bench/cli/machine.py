@@ -5,9 +5,7 @@ import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hli_bench.base.errors import InputError, NotEmulated
-from hli_bench.bench.drive_models import eds_of
-from hli_bench.cli.drive import described_by
+from hli_bench.base.errors import EnvironmentLacks, InputError, NotEmulated
 from hli_bench.cli.options import Commands, machine_name
 
 if TYPE_CHECKING:
@@ -50,7 +48,9 @@ def copy_machine(arguments: argparse.Namespace) -> int:
         message = "is there already and is not written over; choose another folder, or remove it first"
         raise InputError(message, file=str(target)) from error
     except OSError as error:
-        raise InputError(f"cannot be written: {error.strerror}", file=str(target)) from error
+        # copytree gathers the errors of all files as (from, to, reason).
+        reason = error.args[0][0][2] if isinstance(error, shutil.Error) else error.strerror
+        raise EnvironmentLacks(f"{target}: cannot be written: {reason}") from error
     print(f"{target}: copied from {source}; use it with --machine {target}")
     return 0
 
@@ -83,15 +83,10 @@ def check_machine(arguments: argparse.Namespace) -> int:
 
 def check_named(config: "MachineConfig") -> None:
     """Check drive models with their EDS files, and PLC scripts. Raises InputError naming whose they are."""
+    from hli_bench.bench import build
+    from hli_bench.plant import build as plant
     from hli_bench.plc import load as load_script
 
-    users = {axis.drive: axis.name for axis in reversed(config.axes)}
-    for drive, axis in users.items():
-        try:
-            eds = eds_of(drive)
-            if eds is not None:
-                described_by(eds)
-        except InputError as error:
-            raise InputError(f"axis.{axis}.drive: {error}") from error
+    build.drives(config, plant.build(config.plant, config.channels()).rows.servo)
     for plc in config.plcs:
         load_script(plc.script)

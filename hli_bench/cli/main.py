@@ -12,6 +12,7 @@ import signal
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final, NoReturn
 
@@ -75,18 +76,25 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     garbage.seldom()
-    arguments = parser().parse_args(argv)
-    _take_signals()
     try:
-        status: int = arguments.execute(arguments)
-        sys.stdout.flush()
-    except BenchError as error:
-        print(error, file=sys.stderr)
-        return error.exit_status
+        try:
+            return _execute(argv)
+        finally:
+            sys.stdout.flush()
     except KeyboardInterrupt:
         return INTERRUPTED
     except Exception as error:
         return _failed(error)
+
+
+def _execute(argv: Sequence[str] | None) -> int:
+    arguments = parser().parse_args(argv)
+    _take_signals()
+    try:
+        status: int = arguments.execute(arguments)
+    except BenchError as error:
+        print(error, file=sys.stderr)
+        return error.exit_status
     return status
 
 
@@ -105,12 +113,14 @@ def _failed(error: Exception) -> int:
     if number not in (errno.EPIPE, errno.ENOSPC):
         traceback.print_exception(error)
         return FAULT_OF_OURS
+    # Who writes a file says which one it was; here it was a standard stream.
+    if number == errno.ENOSPC:
+        with suppress(OSError):
+            print(f"standard output: cannot be written: {os.strerror(number)}", file=sys.stderr)
     # What is still buffered must not fail again when the interpreter flushes it.
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    if number == errno.EPIPE:
-        return PIPE_CLOSED
-    print(f"standard output: cannot be written: {os.strerror(number)}", file=sys.stderr)
-    return EnvironmentLacks.exit_status
+    for stream in (sys.stdout, sys.stderr):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+    return PIPE_CLOSED if number == errno.EPIPE else EnvironmentLacks.exit_status
 
 
 def _take_signals() -> None:

@@ -4,14 +4,13 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError
 from hli_bench.cli.options import (
-    NO_PLC,
     BenchOptions,
     Commands,
     add_bench,
@@ -108,7 +107,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.connect:
         return _run_connected(program, arguments)
     options = bench_options(arguments)
-    prepare(arguments, program)
+    prepare(arguments, [program, *_files_read(options)])
     failures: list[BenchError] = []
     result = _run(program, options, arguments, failures)
     with _collected(failures):
@@ -123,17 +122,12 @@ def execute(arguments: argparse.Namespace) -> int:
     return EXIT_STATUS[result.status]
 
 
-def prepare(arguments: argparse.Namespace, program: Path) -> None:
+def prepare(arguments: argparse.Namespace, read: Iterable[Path]) -> None:
     """Make sure that all files can be written; what an earlier run left there is emptied. Raises InputError.
 
-    None may be a file of the run itself, or the same as another.
+    None may be one that the run reads, or the same as another.
     """
-    plcs = (
-        []
-        if arguments.plc is None
-        else [supplied_file("plc_scripts", one) for one in arguments.plc if one != NO_PLC]
-    )
-    taken = {path.resolve(): "is read by this run" for path in (program, *plcs)}
+    taken = {path.resolve(): "is read by this run" for path in read}
     given = [
         (Path(file), f"--{name.replace('_', '-')}") for name in OUTPUTS if (file := getattr(arguments, name))
     ]
@@ -144,6 +138,18 @@ def prepare(arguments: argparse.Namespace, program: Path) -> None:
         taken[place] = f"is given to {option} too"
     for path, option in given:
         _empty(path, option)
+
+
+def _files_read(options: BenchOptions) -> Iterator[Path]:
+    """Yield what a bench is made of: PLC scripts, all files of the machine folder, files that settings name."""
+    from hli_bench.bench.folder import machine_folder
+
+    folder = machine_folder(options.machine)
+    yield from map(Path, options.plc or ())
+    yield from folder.iterdir()
+    for value in options.settings.values():
+        if isinstance(value, str):
+            yield from (Path(value), folder / value)
 
 
 def _empty(path: Path, option: str) -> None:
@@ -298,7 +304,7 @@ def _run_connected(program: Path, arguments: argparse.Namespace) -> int:
         if getattr(arguments, name) is not None:
             option = f"--{name.replace('_', '-')}"
             raise InputError(f"{option} cannot be chosen for a bench that is up already", file="--connect")
-    prepare(arguments, program)
+    prepare(arguments, [program])
     from hli_bench.bench.result import Error
     from hli_bench.shells.zenoh_client import HliClient
 

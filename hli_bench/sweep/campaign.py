@@ -11,7 +11,7 @@ from typing import Any, Final, cast
 from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.loading import data_file
 from hli_bench.bench.config import MachineConfig
-from hli_bench.bench.drive_models import drive_model
+from hli_bench.bench.drive_models import drive_model, eds_of
 from hli_bench.bench.folder import load, machine_folder
 from hli_bench.bench.sources import NUMBERED, SET, line_numbers, line_of, toml_tree
 from hli_bench.sweep.draws import FORMS, RULES, Choice, Distribution, Integers, Plain, distribution, share
@@ -367,14 +367,21 @@ def _with_neighbours(scripts: Collection[Path]) -> set[Path]:
 
 
 def _drive_files(campaign: Campaign, machine: MachineConfig) -> set[Path]:
-    """Return the files of the drive models that the runs of a campaign may name. Raises InputError."""
-    names = {axis.drive for axis in machine.axes}
+    """Return the files of the drive models that the runs of a campaign may name, and their EDS. Raises InputError."""
+    users = {axis.drive: f"axis.{axis.name}.drive" for axis in machine.axes}
     chosen = {key: (value,) for key, value in campaign.fixed.items()}
     drawn = {key: of.values for key, of in campaign.random.items() if isinstance(of, Choice)}
     for key, values in {**chosen, **campaign.grid, **drawn}.items():
         if key.startswith("axis.") and key.endswith(".drive"):
-            names.update(map(str, values))
-    return {Path(drive_model(name).__file__) for name in names}
+            users |= dict.fromkeys(map(str, values), key)
+    files: set[Path] = set()
+    for name, key in users.items():
+        try:
+            model = drive_model(name)
+            files |= {Path(model.__file__), *([eds] if (eds := eds_of(model)) else [])}
+        except InputError as error:
+            raise InputError(f"{key} = {name}: {error}", file=campaign.file) from error
+    return files
 
 
 def _digests(campaign: Campaign, scripts: Collection[Path]) -> dict[str, str]:

@@ -89,7 +89,7 @@ class Store:
             if any(self._parts()) or self.table.exists():
                 raise InputError(f"holds runs and no {MANIFEST}; choose another --out", file=str(self.folder))
             text = json.dumps({"campaign": Path(self._campaign.file).name, **manifest}, indent=2)
-            _replace(path, (text + "\n").encode())
+            replace_file(path, (text + "\n").encode())
             return
         try:
             found = json.loads(path.read_text(encoding="utf-8"))
@@ -118,9 +118,12 @@ class Store:
     def _read(self, file: Path) -> Any:
         try:
             return pq.read_table(file, schema=self._schema)
-        except (OSError, pa.ArrowException) as error:
-            message = "is damaged; delete it, and the same command does its runs anew"
-            raise InputError(message, file=str(file)) from error
+        except OSError as error:
+            if error.errno is not None:
+                raise EnvironmentLacks(f"{file}: cannot be read: {error.strerror}") from error
+            raise _damaged(file) from error
+        except pa.ArrowException as error:
+            raise _damaged(file) from error
 
     def _table(self, rows: Sequence[Row]) -> Any:
         campaign = self._campaign
@@ -134,7 +137,7 @@ class Store:
     def _write(self, table: Any, path: Path) -> None:
         sink = pa.BufferOutputStream()
         pq.write_table(table, sink, compression="zstd")
-        _replace(path, sink.getvalue().to_pybytes())
+        replace_file(path, sink.getvalue().to_pybytes())
 
 
 def schema(campaign: Campaign) -> Any:
@@ -147,16 +150,23 @@ def schema(campaign: Campaign) -> Any:
     return pa.schema(fields)
 
 
-def _replace(path: Path, data: bytes) -> None:
-    """Write a file so that it is there whole or not at all, also after a power failure."""
+def _damaged(file: Path) -> InputError:
+    return InputError("is damaged; delete it, and the same command does its runs anew", file=str(file))
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Write a file so that it is there whole or not at all, also after a power failure. Raises EnvironmentLacks."""
     new = path.with_name(path.name + ".new")
-    with new.open("wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-    new.replace(path)
-    folder = os.open(path.parent, os.O_RDONLY)
     try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
+        with new.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        new.replace(path)
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+    except OSError as error:
+        raise EnvironmentLacks(f"{path}: cannot be written: {error.strerror}") from error

@@ -9,7 +9,7 @@ from hli_bench.sweep.campaign import Campaign
 from hli_bench.sweep.engines import Chunk, Engine
 from hli_bench.sweep.progress import Progress
 from hli_bench.sweep.report import report_html
-from hli_bench.sweep.store import Store
+from hli_bench.sweep.store import Store, replace_file
 from hli_bench.sweep.work import Failure, Row, Run
 
 REPORT: Final = "report.html"
@@ -49,7 +49,7 @@ def _run(campaign: Campaign, store: Store, engine: Engine, workers: int, stream:
     for name in campaign.metrics:
         if table.column(name).null_count == table.num_rows:
             print(f"warning: {name} is empty in all {table.num_rows} runs", file=stream)
-    (store.folder / REPORT).write_text(report_html(campaign, table), encoding="utf-8")
+    replace_file(store.folder / REPORT, report_html(campaign, table).encode())
     return len(rest)
 
 

@@ -145,7 +145,7 @@ def test_a_missing_eds_is_named(command: Command, tmp_path: Path, monkeypatch: p
     monkeypatch.syspath_prepend(tmp_path)
     drive = "axis.Z.drive=drive_without_eds"
     status, _, said = command("run", "probe.nc", "--set", drive)
-    assert (status, said) == (2, "no 'nowhere.eds' in eds/\n")
+    assert (status, said) == (2, "axis.Z.drive: no 'nowhere.eds' in eds/\n")
     status, _, said = command("machine", "check", "demo", "--set", drive)
     assert (status, said) == (2, "axis.Z.drive: no 'nowhere.eds' in eds/\n")
 
@@ -162,6 +162,7 @@ def test_a_drive_model_is_the_same_to_run_and_to_machine_check(
         DRIVE_WITHOUT_EDS.replace("nowhere.eds", str(tmp_path / "poor.eds"))
     )
     (tmp_path / "plain_drive.py").write_text("from drives.models.servo402 import create\n")
+    (tmp_path / "failing_drive.py").write_text("\n1 / 0\n")
     monkeypatch.syspath_prepend(tmp_path)
     empty = program(tmp_path, "N10 M30")
     for words in (("run", empty), ("machine", "check", "demo")):
@@ -169,6 +170,9 @@ def test_a_drive_model_is_the_same_to_run_and_to_machine_check(
         assert (status, said) == (2, "axis.Z.drive: 'no_drive' is no drive model, it has no create()\n")
         status, _, said = command(*words, "--set", "axis.Z.drive=poor_drive")
         assert (status, said.endswith("poor.eds: a CiA 402 drive needs the objects 60B9:00\n")) == (2, True)
+        status, _, said = command(*words, "--set", "axis.Z.drive=failing_drive")
+        place = f"{tmp_path / 'failing_drive.py'}:2"
+        assert (status, said) == (2, f"axis.Z.drive: {place}: ZeroDivisionError: division by zero\n")
         assert command(*words, "--set", "axis.Z.drive=plain_drive")[0] == 0
 
 

@@ -42,6 +42,8 @@ def read_result(path: Path) -> Any:
         (["--trace", "own.nc"], "own.nc: --trace: is read by this run"),
         (["--result", "./own.nc"], "own.nc: --result: is read by this run"),
         (["--plc", "own.py", "--can-log", "own.py"], "own.py: --can-log: is read by this run"),
+        (["--set", "plc.0.script=own.py", "--result", "own.py"], "own.py: --result: is read by this run"),
+        (["--machine", ".", "--trace", "machine.toml"], "machine.toml: --trace: is read by this run"),
         (["--result", "x", "--report", "./x"], "x: --report: is given to --result too"),
     ],
 )
@@ -53,12 +55,16 @@ def test_no_file_of_a_run_is_written_over(
     said: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    for name, text in (("own.nc", NEAR), ("own.py", "class Own:\n    def cycle(self, hli, io): ...\n")):
+    texts = {
+        "own.nc": NEAR,
+        "own.py": "class Own:\n    def cycle(self, hli, io): ...\n",
+        "machine.toml": "[axis.X]\nstart_mm = 0\n",
+    }
+    for name, text in texts.items():
         (tmp_path / name).write_text(text)
     assert main(["run", "own.nc", *options]) == 2
     assert capsys.readouterr().err == f"{said}\n"
-    assert (tmp_path / "own.nc").read_text() == NEAR
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["own.nc", "own.py"]
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == texts
 
 
 @pytest.mark.parametrize(
@@ -66,6 +72,8 @@ def test_no_file_of_a_run_is_written_over(
     [
         (">&-", 0, "completed"),
         (">/dev/full", 3, "standard output: cannot be written: No space left on device"),
+        (">/dev/full 2>/dev/full", 3, ""),
+        ("2>/dev/full", 3, None),
         ("2>&-", 0, None),
     ],
 )

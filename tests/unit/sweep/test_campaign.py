@@ -1,3 +1,4 @@
+import sys
 from pathlib import Path
 
 import pytest
@@ -139,8 +140,18 @@ def test_a_drive_model_that_a_run_may_name_counts_as_part_of_it(write, tmp_path,
     model.write_text("from drives.models.servo402 import create\n")
     after = read(write(text)).digests
     assert {name for name in before if before[name] != after[name]} == {"drives"}
-    with pytest.raises(InputError, match="nowhere"):
+    model.write_text(
+        f'from types import SimpleNamespace\nMODEL = SimpleNamespace(eds="{tmp_path}/my.eds")\ndef create(): ...'
+    )
+    digests = []
+    for content in ("old", "new"):
+        (tmp_path / "my.eds").write_text(content)
+        monkeypatch.delitem(sys.modules, "my_drive")
+        digests.append(read(write(text)).digests["drives"])
+    assert digests[0] != digests[1]
+    with pytest.raises(InputError, match=r"axis\.Z\.drive = nowhere: no module 'nowhere'") as caught:
         read(write(text.replace("my_drive", "nowhere")))
+    assert caught.value.file.endswith(".toml")
 
 
 def test_too_many_runs_are_a_mistake(write):

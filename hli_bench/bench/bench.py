@@ -333,11 +333,12 @@ class Bench:
         return self._tap.door
 
     def _without_plc(self) -> Iterator[str]:
-        """Yield what there is to say of scripts in this process that take part no more."""
+        """Yield what there is to say of the bench's own PLCs that take part no more."""
         present = {plc.name for plc in self.engine.plcs}
         for plc in self._plcs:
-            if not plc.process and plc.name not in present:
-                yield self._lost.get(plc.name) or f"PLC {plc.name} takes part no more: its script has failed"
+            if plc.name not in present:
+                what = "process has ended" if plc.process else "script has failed"
+                yield self._lost.get(plc.name) or f"PLC {plc.name} takes part no more: its {what}"
 
     def _lost_plc(self, name: str, note: str) -> None:
         """Tell at once, and in the result, that a script has not returned."""
@@ -376,9 +377,13 @@ class Bench:
 
 
 def plc_configs(config: MachineConfig, scripts: Sequence[str | Path] | None) -> list[PlcConfig]:
-    """Return the PLC tasks: the machine's own, or one for each of `scripts`."""
+    """Return the PLC tasks: the machine's own, or one for each of `scripts`. Raises InputError for equal names."""
     if scripts is None:
         return list(config.plcs)
+    names = [Path(script).stem for script in scripts]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"plc: two scripts are called {name!r}, and PLCs are told apart by their names")
     return [PlcConfig(Path(script).stem, Path(script), None, False) for script in scripts]
 
 

@@ -153,9 +153,9 @@ class HliDoor:
         try:
             write = engine.access.write_of(request.write)
         except InputError as error:
-            request.refuse(error.message)
-            return
-        refusals = engine.apply(Commands("", engine.cycle, (write,)))
+            refusals = engine.refuse([Refusal(request.write.path, error.message)])
+        else:
+            refusals = engine.apply(Commands("", engine.cycle, (write,)))
         if refusals:
             request.deny(refusals[0].reason)
             return

@@ -309,9 +309,17 @@ def _run_connected(program: Path, arguments: argparse.Namespace) -> int:
     from hli_bench.shells.zenoh_client import HliClient
 
     text = program.read_text(encoding="utf-8", errors="replace")
-    stopped = f"stopped: the bench at {arguments.connect} has aborted {program.name} and stays up"
     with HliClient(arguments.connect) as client:
-        result = client.run(text, program.name, lambda: _print_note(stopped))
+        try:
+            result = client.run(text, program.name)
+        except KeyboardInterrupt:
+            if client.interrupted is None:
+                raise
+            result = client.interrupted
+            if result["status"] == "aborted":
+                _print_note(
+                    f"stopped: the bench at {arguments.connect} has aborted {program.name} and stays up"
+                )
     for message in result["messages"]:
         print(message["text"], flush=True)
     for error in result["errors"]:

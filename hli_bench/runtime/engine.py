@@ -187,12 +187,17 @@ class Engine:
     def apply(self, commands: Commands) -> list[Refusal]:
         """Let writes from outside count from the next cycle on; return those that were refused."""
         refusals = self.access.apply(commands)
-        for observer in self.observers:
-            observer.commands(commands)
+        if commands.plc or not refusals:
+            for observer in self.observers:
+                observer.commands(commands)
+        self._decide = True
+        return self.refuse(refusals)
+
+    def refuse(self, refusals: list[Refusal]) -> list[Refusal]:
+        """Tell all who listen of writes that were refused; return them."""
         if refusals:
             for listener in (*self.observers, *self.listeners):
                 listener.refused(self.cycle, refusals)
-        self._decide = True
         return refusals
 
     def attach(self, plc: PlcPort) -> None:

@@ -1,7 +1,7 @@
 """A bench that is up, from outside: elements, programs, state, faults. What the command line uses."""
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from queue import Empty, SimpleQueue
 from typing import Any, Final, Self
 from urllib.parse import quote
@@ -30,6 +30,8 @@ class HliClient:
         Raises EnvironmentLacks when nobody listens on `endpoint` or no bench answers there.
         """
         self.endpoint = endpoint
+        self.interrupted: dict[str, Any] | None = None
+        """What a program had done when it was interrupted."""
         self.session = connect(endpoint, lease_ms)
         try:
             question = f"{machine or '*'}/hli/layout"
@@ -109,19 +111,19 @@ class HliClient:
             for subscriber in watched:
                 subscriber.undeclare()
 
-    def run(
-        self, text: str, name: str = "", on_interrupt: Callable[[], None] = lambda: None
-    ) -> dict[str, Any]:
-        """Run an NC program and return its result; Ctrl-C aborts it. Raises InputError when the bench refuses it."""
+    def run(self, text: str, name: str = "") -> dict[str, Any]:
+        """Run an NC program and return its result. Raises InputError when the bench refuses it.
+
+        KeyboardInterrupt aborts it and goes on; `interrupted` holds the result then.
+        """
         selector = f"cnc/run?name={quote(name)}" if name else "cnc/run"
         replies = self._get(selector, text, PROGRAM_S)
         try:
-            answer = self._only(selector, replies)
+            result: dict[str, Any] = json.loads(self._only(selector, replies))
         except KeyboardInterrupt:
             self.reset()
-            on_interrupt()
-            answer = self._only(selector, replies)
-        result: dict[str, Any] = json.loads(answer)
+            self.interrupted = json.loads(self._only(selector, replies))
+            raise
         return result
 
     def reset(self) -> str:

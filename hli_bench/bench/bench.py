@@ -177,6 +177,7 @@ class Bench:
             self._pace.take_part()
         ended = False
         holding: list[str] = []
+        stopped: KeyboardInterrupt | None = None
         try:
             self.kernel.start(lines, name, WITHOUT_MOTION if self._pace is None else WITHOUT_MOTION_PACED)
             self.engine.wake()
@@ -184,10 +185,8 @@ class Bench:
                 self._door.state_changed()
             ended = self._advance(lambda: not self.kernel.channel.running, last)
             holding = [] if ended else self.kernel.holding()
-        except KeyboardInterrupt:
-            holding = self.kernel.holding()
-            self.interrupted = self._result(name, "aborted", collector, first, watch, holding)
-            raise
+        except KeyboardInterrupt as interrupt:
+            holding, stopped = self.kernel.holding(), interrupt
         finally:
             if not ended:
                 self.engine.hand_out()
@@ -197,6 +196,9 @@ class Bench:
                 self._door.state_changed()
         status = collector.status(completed=self.kernel.channel.completed) if ended else "aborted"
         result = self._result(name, status, collector, first, watch, holding)
+        if stopped is not None:
+            self.interrupted = result
+            raise stopped
         if self._pace is not None:
             self._garbage.between_programs()
         return result

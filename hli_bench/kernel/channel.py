@@ -37,6 +37,8 @@ from hli_bench.manual.errors import path_interpolator as errors
 from hli_bench.manual.errors import position_controller as position_errors
 
 _NOWHERE = Source("", 0)
+_SOON = -1
+"""A program has begun and not seen a cycle yet."""
 Item = Block | Flush | CncError | Idle
 Items = Generator[Item, MachineState | None, None]
 READY_CYCLES = 500
@@ -101,7 +103,8 @@ class Channel:
         core = self._core
         self._probes = {axis.index: measurement.default_probe(core, axis.index) for axis in core.setup.axes}
         self._error_no_signal = core.setup.channel.meas_error_no_signal
-        self._begin_by = core.cycle + READY_CYCLES
+        self._source = _NOWHERE
+        self._begin_by = _SOON
         self.running = True
         self.completed = False
 
@@ -154,6 +157,9 @@ class Channel:
 
     def _proceed(self) -> bool:
         """Do the next thing; False when it has to wait."""
+        if self._begin_by == _SOON:
+            # Only now the cycle is known: nobody may have decided for long.
+            self._begin_by = self._core.cycle + READY_CYCLES
         if self._begin_by is not None:
             if not self._may_begin(self._begin_by):
                 return False
@@ -170,6 +176,9 @@ class Channel:
                 self._wait_for_rest()
                 return False
             self._hand_out_texts()
+            if isinstance(self._barrier, MeasuringRun) and not self._may_measure(self._barrier):
+                self._go_on_in_next_cycle()
+                return False
             barrier, self._barrier = self._barrier, None
             self._behind_motion(barrier)
             return True
@@ -243,6 +252,9 @@ class Channel:
                 self._activity = Dwelling(core, item)
             case ProgramEnd():
                 self._end(completed=True)
+
+    def _may_measure(self, block: MeasuringRun) -> bool:
+        return measurement.may_begin(self._core, block, self._probes)
 
     def _measuring(self, block: MeasuringRun) -> Activity | None:
         for axis in block.axes:

@@ -34,6 +34,8 @@ class Core:
     referenced: list[bool] = field(default_factory=list)
     starting: set[AxisIndex] = field(default_factory=set)
     """Axes whose drives are on their way into operation."""
+    disarmed: dict[AxisIndex, int] = field(default_factory=dict)
+    """Cycle in which an axis' latch control word was cleared last."""
     failed: bool = False
     """An error (not a warning) has been emitted since the last program start or reset."""
 

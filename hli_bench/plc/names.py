@@ -33,10 +33,14 @@ class Frame:
     def begin(self, image: bytes | bytearray) -> None:
         """Start a cycle; members that both sides write are read from the image again."""
         self.image = image
-        self.changes = {}
         for written, name in self.transient:
             written.pop(name, None)
         self.transient.clear()
+
+    def take_changes(self) -> dict[int, Value]:
+        """Return what was written since the last call; a cycle that was interrupted hands over with the next one."""
+        changes, self.changes = self.changes, {}
+        return changes
 
 
 class Node:

@@ -78,9 +78,10 @@ class Task:
             raise script_error(error, self._file) from error
         if not frame.changes:
             return Commands(self.name, cycle, ())
+        changes = frame.take_changes()
         paths = self._paths
         return Commands(
             self.name,
             cycle,
-            tuple([Write(paths[element], value) for element, value in frame.changes.items()]),
+            tuple([Write(paths[element], value) for element, value in changes.items()]),
         )

@@ -305,15 +305,21 @@ class Engine:
         """Run the tasks that are due: all of them see the same images."""
         cycle = self.cycle
         due = [plc for plc in self.plcs if cycle % plc.period_cycles == 0]
-        self._tick = cycle + due[0].period_cycles if len(self.plcs) == 1 else self._next_tick()
+        self._tick = self._next_tick() if len(self.plcs) > 1 or not due else cycle + due[0].period_cycles
         io = self.link.images(cycle)
         dc_ns = self.dc_ns
         image = self.kernel.image.data
-        for plc, commands in [(plc, self._run_plc(plc, cycle, dc_ns, image, io)) for plc in due]:
-            if commands is None:
-                self.lose(plc.name)
-            elif commands.writes:
-                self.apply(commands)
+        answers: list[tuple[PlcPort, Commands | None]] = []
+        try:
+            for plc in due:
+                answers.append((plc, self._run_plc(plc, cycle, dc_ns, image, io)))  # noqa: PERF401 - kept when one fails
+        finally:
+            # Those who have answered never say it again, whatever became of one after them.
+            for plc, commands in answers:
+                if commands is None:
+                    self.lose(plc.name)
+                elif commands.writes:
+                    self.apply(commands)
 
     def _run_plc(
         self, plc: PlcPort, cycle: int, dc_ns: Ns, image: bytearray, io: Mapping[str, bytes]

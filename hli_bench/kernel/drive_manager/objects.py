@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hli_bench.base.ids import NodeId
 from hli_bench.base.time import Ns
@@ -66,9 +66,11 @@ class ObjectChannel:
         return bool(self._running) or any(self._orders.values())
 
     def clear(self) -> None:
-        """Forget what waits (a CNC reset); what is on its way ends by itself."""
+        """Forget what waits (a CNC reset); what is on its way ends by itself, and nobody hears how."""
         for orders in self._orders.values():
             orders.clear()
+        for node, order in self._running.items():
+            self._running[node] = replace(order, done=_nobody)
 
     def _finish(self, node: NodeId) -> None:
         client = self._clients[node]
@@ -81,3 +83,7 @@ class ObjectChannel:
             order.done(abort)
         else:
             order.done(None)
+
+
+def _nobody(_: SdoAbort | None) -> None:
+    """Hear the answer to an order that nobody waits for any more."""

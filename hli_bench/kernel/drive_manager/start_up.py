@@ -15,7 +15,7 @@ from hli_bench.kernel.drive_manager.objects import ObjectChannel, Order
 from hli_bench.kernel.drive_manager.telegram import second_input_telegrams
 from hli_bench.kernel.sequence import END, Level, Phase, Table, Then, Until
 from hli_bench.kernel.watches import statusword
-from hli_bench.laws.rows import FOLLOW, PATH
+from hli_bench.laws.rows import FOLLOW, HOLD, PATH
 from hli_bench.manual.axis.fallbacks import effective_input
 from hli_bench.protocols.canopen.aborts import SdoAbort
 from hli_bench.protocols.canopen.cia402 import (
@@ -97,7 +97,8 @@ def _follow(drive: Drive) -> None:
 
 
 def _in_operation(drive: Drive) -> None:
-    drive.core.row(drive.axis)["mode"] = PATH
+    # A path that still brakes goes on without this axis: it stands where it was taken back into operation.
+    drive.core.row(drive.axis)["mode"] = PATH if drive.core.path.idle else HOLD
     drive.core.show(drive.axis, "lr_state/ready_for_power_on_r", True)
     drive.core.show(drive.axis, "lr_state/ready_for_control_loop_on_r", True)
 

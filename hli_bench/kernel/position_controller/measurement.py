@@ -133,6 +133,16 @@ def _stop_refused(core: Core, block: MeasuringRun, index: AxisIndex) -> bool:
     return False
 
 
+def may_begin(core: Core, block: MeasuringRun, probes: Mapping[AxisIndex, Probe]) -> bool:
+    """Tell whether all sources of a run can be armed in this cycle; if not they can in the next one."""
+    run = Run(core, block, probes, error_no_signal=False, pending={})
+    return all(
+        probing.source(probe.signal).free(core, axis, probe.input, probe.edge)
+        for axis in block.axes
+        for probe in [_probe(run, axis)]
+    )
+
+
 def begin(
     core: Core, block: MeasuringRun, probes: Mapping[AxisIndex, Probe], *, error_no_signal: bool
 ) -> Run | None:

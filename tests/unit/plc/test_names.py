@@ -22,7 +22,7 @@ class Program:
         self.frame.begin(self.image.data)
 
     def changes(self) -> Any:
-        return {LAYOUT.elements[number].path: value for number, value in self.frame.changes.items()}
+        return {LAYOUT.elements[number].path: value for number, value in self.frame.take_changes().items()}
 
 
 @pytest.fixture

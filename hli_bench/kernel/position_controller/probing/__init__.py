@@ -22,6 +22,9 @@ class Source(Protocol):
     def blocked(self, core: Core, axis: AxisIndex, edge: Edge) -> bool:
         """Tell whether the probe is operated before the run begins."""
 
+    def free(self, core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> bool:
+        """Tell whether it can be armed; it shows nothing of an earlier run any more, or takes it back by itself."""
+
     def arm(self, core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Condition | None:
         """Prepare the source; return what to wait for before the motion, None when it is ready at once."""
 

@@ -27,6 +27,12 @@ def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:
     return False
 
 
+def free(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> bool:
+    """Not in the cycle that cleared the word: a drive that never sees it cleared keeps the value it shows."""
+    shown = core.row(axis)["probe_status"] & STORED[edge] << _shift(probing_input)
+    return not shown or core.disarmed.get(axis) != core.cycle
+
+
 def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Condition | None:
     """Set the latch control word; ready when the drive shows it enabled."""
     function = ENABLE | SAMPLE[edge]
@@ -52,4 +58,5 @@ def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tupl
 
 def disarm(core: Core, axis: AxisIndex) -> None:
     """Clear the latch control word."""
+    core.disarmed[axis] = core.cycle
     core.row(axis)["probe_function"] = 0

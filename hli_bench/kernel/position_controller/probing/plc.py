@@ -25,6 +25,11 @@ def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:
     return _level(core, axis) == (edge is Edge.POS)
 
 
+def free(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> bool:
+    """It shows nothing of an earlier run."""
+    return True
+
+
 def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Condition | None:
     """Nothing to prepare: the unit is read all the time."""
     return None

@@ -23,10 +23,9 @@ def nothing_to_probe(
     errors: Sequence[Error],
     unserved: Mapping[AxisIndex, Sequence[str]],
 ) -> list[str]:
-    """Return a remark for each axis that was to probe, and could not: no face at all, or no PLC that says so.
+    """Return a remark for each axis that was to probe, and did not: no face at all, no PLC that says so, no signal.
 
-    `unserved` names the control units of each axis that no PLC served, and why. Where any axis has a face and a PLC
-    serves the units nothing is said: why the face was not met, the machine's settings do not tell.
+    `unserved` names the control units of each axis that no PLC served, and why.
     """
     settled = {one.axis for one in found} | {
         one.axis for one in errors if one.id == FIXED_STOP_NOT_FOUND.number
@@ -46,11 +45,14 @@ def nothing_to_probe(
             f"plant.probe.{axis.name}.face_mm and plant.probe.{axis.name}.material set one"
             for axis in to_probe
         ]
-    return [
-        f"axis {axis.name} measured nothing, as no PLC serves {unit}"
-        for axis in to_probe
-        for unit in unserved.get(axis.index, ())
-    ]
+    reported = {one.axis for one in errors}
+    remarks: list[str] = []
+    for axis in to_probe:
+        units = unserved.get(axis.index, ())
+        remarks += [f"axis {axis.name} measured nothing, as no PLC serves {unit}" for unit in units]
+        if not units and axis.name not in reported:
+            remarks.append(f"axis {axis.name} measured nothing: no probing signal came on its way")
+    return remarks
 
 
 def _waits_for_a_face(config: MachineConfig, axis: AxisConfig) -> bool:

@@ -214,7 +214,7 @@ def _run(
         with _recorders(bench, options, arguments, failures):
             bench.start_up()
             try:
-                result = bench.run(program, limit_s=arguments.limit)
+                result = bench.run(program, arguments.program, limit_s=arguments.limit)
             except KeyboardInterrupt:
                 if bench.interrupted is None:
                     raise
@@ -311,14 +311,14 @@ def _run_connected(program: Path, arguments: argparse.Namespace) -> int:
     text = program.read_text(encoding="utf-8", errors="replace")
     with HliClient(arguments.connect) as client:
         try:
-            result = client.run(text, program.name)
+            result = client.run(text, arguments.program)
         except KeyboardInterrupt:
             if client.interrupted is None:
                 raise
             result = client.interrupted
             if result["status"] == "aborted":
                 _print_note(
-                    f"stopped: the bench at {arguments.connect} has aborted {program.name} and stays up"
+                    f"stopped: the bench at {arguments.connect} has aborted {arguments.program} and stays up"
                 )
     for message in result["messages"]:
         print(message["text"], flush=True)

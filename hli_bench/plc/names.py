@@ -88,6 +88,12 @@ class Node:
     def __dir__(self) -> list[str]:
         return sorted({*self._elements, *self._frame.structures[self._path]})
 
+    def __bool__(self) -> bool:
+        raise TypeError(f"{self._path} is a structure and has no value; it has {', '.join(dir(self))}")
+
+    def __repr__(self) -> str:
+        return f"<{self._path}>"
+
     def _write(self, name: str, value: Value) -> None:
         if name not in self._elements:
             return setattr(self, self._member(name), value)
@@ -113,6 +119,9 @@ class Node:
     def _member(self, name: str) -> str:
         """Return the member that an old name like X_Command means. Raises AttributeError for any other."""
         member = MEMBER_ALIASES.get(name.lower(), "")
+        if f"{self._path}/{name}" in self._frame.structures:
+            inside = ", ".join(dir(getattr(self, name)))
+            raise AttributeError(f"{self._path}/{name} is a structure; write one of its members: {inside}")
         if member not in self._elements:
             _unknown(name, self._path, dir(self))
         return member
@@ -159,9 +168,16 @@ class IoNode:
     _path = "io"
 
     def __getattr__(self, name: str) -> NoReturn:
-        _unknown(
-            name, self._path, [key for key in (*vars(type(self)), *vars(self)) if not key.startswith("_")]
-        )
+        _unknown(name, self._path, self._inside())
+
+    def __bool__(self) -> bool:
+        raise TypeError(f"{self._path} is a structure and has no value; it has {', '.join(self._inside())}")
+
+    def __repr__(self) -> str:
+        return f"<{self._path}>"
+
+    def _inside(self) -> list[str]:
+        return [key for key in (*vars(type(self)), *vars(self)) if not key.startswith("_")]
 
     def __setattr__(self, name: str, value: object) -> None:
         getattr(self, name)

@@ -48,6 +48,8 @@ STRANGERS: Final = 64
 LOOKS: Final = 1000
 """How often Zenoh is asked who listens after it said that this has changed: it says so before it knows itself, and
 asking it takes as long as a put."""
+READ_ONLY: Final = ("io/**", "hli/layout", "hli/errors", "hli/terminals", "cnc/state", "cnc/errors")
+"""What only the bench puts; not the image, for which a subscriber would have it put every cycle."""
 REPLIES_A_CALL: Final = 64
 """Replies to reading queries sent per look at the inbox, so that a wide query does not stop the cycle."""
 
@@ -228,8 +230,9 @@ class HliServer:
         return departed
 
     def detach(self, plc: str) -> None:
-        """Let go of a PLC that stalls; when it writes again it is told to attach anew."""
-        self._mail.pop(plc, None)
+        """Let go of a PLC and tell it so, unless it has gone."""
+        if self._mail.pop(plc, None) is not None:
+            self._put(f"plc/{plc}/detached", b"")
         self.late.pop(plc, None)
 
     def report(self, refusals: Iterable[Refusal]) -> None:
@@ -264,6 +267,7 @@ class HliServer:
             (f"plc/*{COMMANDS}", on_network_thread(put)),
             ("hli/unit/**", queued(put, self._on_member)),
             ("cnc/reset", queued(put, self._on_reset_put)),
+            *((key, queued(put, self._on_read_only)) for key in READ_ONLY),
         ):
             # Remote only: the bench's own puts of units would come back as writes.
             session.declare_subscriber(f"{machine}/{key}", on_sample, allowed_origin=zenoh.Locality.REMOTE)
@@ -370,8 +374,10 @@ class HliServer:
             period = int(period)
         if isinstance(period, bool) or not isinstance(period, int):
             reason = 'JSON {"period_us": whole number} expected'
-        elif not 0 < period <= LONGEST_PERIOD_US or "*" in path:
-            reason = f"a period above 0, up to {LONGEST_PERIOD_US}, and the name of one PLC expected"
+        elif not 0 < period <= LONGEST_PERIOD_US:
+            reason = f"period_us = {period}: expected 1 to {LONGEST_PERIOD_US}"
+        elif "*" in path:
+            reason = "the name of one PLC expected"
         else:
             reason = self._not_admitted(plc)
         if reason:
@@ -402,6 +408,9 @@ class HliServer:
             self._requests.append(self._write(sample, None))
         else:
             Request(**self._asked(self._path(sample))).refuse("a member cannot be deleted")
+
+    def _on_read_only(self, sample: zenoh.Sample) -> None:
+        Request(**self._asked(self._path(sample))).refuse("written by the bench, a client may only read it")
 
     def _write(self, message: zenoh.Sample | zenoh.Query, query: zenoh.Query | None) -> WriteRequest:
         path = self._path(message)

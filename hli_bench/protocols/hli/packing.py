@@ -74,7 +74,11 @@ class CommandsPacking:
             entry = self._entries[number]
             if at + entry.size > len(message):
                 raise InputError(f"byte {at}: entry of {self._layout.elements[number].path} is cut off")
-            writes.append(Write(self._layout.elements[number].path, entry.unpack_from(message, at)[1]))
+            element = self._layout.elements[number]
+            value = entry.unpack_from(message, at)[1]
+            # A byte that is no BOOL stays a number, and is refused as one.
+            as_it_is = message[at + 2] if element.type == "BOOL" and message[at + 2] > 1 else value
+            writes.append(Write(element.path, as_it_is))
             at += entry.size
         return Commands(plc, cycle, tuple(writes))
 
@@ -93,6 +97,8 @@ def decoded(element: Element, payload: bytes, *, is_text: bool = False) -> Value
         return _from_text(element, payload)
     if len(payload) != element.size:
         raise InputError(f"{len(payload)} bytes, {element.type} takes {element.size}")
+    if element.type == "BOOL" and payload[0] > 1:
+        raise InputError(f"{payload[0]} is no BOOL: 0 or 1 expected")
     value: Value = Struct("<" + element.code).unpack(payload)[0]
     return value
 

@@ -88,7 +88,10 @@ def test_old_names_mean_the_same_member(program: Any) -> None:
             lambda hli: setattr(hli.ax[1].lr_mc_control.timestamp, "comand_w", 1),
             "'comand_w' in .*near names: command_w",
         ),
-        (lambda hli: setattr(hli.ax[1].lr_mc_control, "timestamp", 1), "'timestamp' in ax/1/lr_mc_control"),
+        (
+            lambda hli: setattr(hli.ax[1].lr_mc_control, "timestamp", 1),
+            "ax/1/lr_mc_control/timestamp is a structure; write one of its members: command_w",
+        ),
         (lambda hli: hli.axis, "'axis' in hli"),
         (lambda hli: setattr(hli.ax[1].lr_mc_control.timestamp, "state_r", 1), "only read"),
     ],

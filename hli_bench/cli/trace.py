@@ -219,19 +219,31 @@ def _event_lines(stretch: "Stretch", meta: "TraceMeta", selection: Selection) ->
 def _event_texts(event: "TraceEvent", meta: "TraceMeta", selection: Selection) -> Iterator[str]:
     """Yield what an event says; nothing for one of an axis that is not wanted."""
     value = event.value
+    numbers = {axis.number: axis.name for axis in meta.axes}
     if event.topic == "can":
-        yield _frame_text(value)
+        nodes = {axis.node: axis.name for axis in meta.axes}
+        if nodes.get(value.cob_id & 0x7F) in {None, *selection.axes}:
+            yield _frame_text(value)
     elif event.topic == "edges":
         yield f"{value['signal']} {_level(value['level'])}"
     elif event.topic == "plc":
         for path, written in value["writes"]:
-            yield f"{value['plc'] or 'client'}: {path} = {_level(written)}"
+            if _axis_of(path, numbers) in {"", *selection.axes}:
+                yield f"{value['plc'] or 'client'}: {path} = {_level(written)}"
     elif event.topic == "refused":
-        yield f"{value['writer'] or 'client'}: {value['path']}: {value['reason']}"
+        if _axis_of(value["path"], numbers) in {"", *selection.axes}:
+            yield f"{value['writer'] or 'client'}: {value['path']}: {value['reason']}"
     elif event.topic == "gaps":
         yield f"{value['count']} cycles are missing, from {value['first']} on"
     else:
         yield from _record_texts(value, meta, selection)
+
+
+def _axis_of(path: str, numbers: Mapping[int, str]) -> str:
+    """Return the axis that an HLI element belongs to, "" for one of none."""
+    area, _, rest = path.partition("/")
+    number = rest.partition("/")[0]
+    return numbers.get(int(number), "") if area == "ax" and number.isdigit() else ""
 
 
 def _level(value: Any) -> str:

@@ -300,6 +300,7 @@ from hli_bench.shells.zenoh_session import connect
 
 with connect(sys.argv[1]) as session:
     token = session.liveliness().declare_token("demo/plc/mute/alive")
+    session.declare_subscriber("demo/plc/mute/detached", lambda _: print("detached", flush=True))
     list(session.get("demo/plc/mute/attach", payload='{"period_us": 1000}', timeout=30.0))
     sys.stdin.read()
 """
@@ -314,12 +315,17 @@ def test_a_plc_that_lives_and_does_not_answer_is_named(
     notes: list[str] = []
     with Bench("demo", plc=[], zenoh=endpoint, pace=pace, on_note=notes.append) as bench:
         bench.start_up()
-        with subprocess.Popen([sys.executable, "-c", MUTE, endpoint], stdin=subprocess.PIPE) as mute:
+        with subprocess.Popen(
+            [sys.executable, "-c", MUTE, endpoint], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        ) as mute:
             deadline = Deadline(PATIENCE_S)
             while not bench._door.attached("mute"):
                 assert not deadline.over
                 bench._door.wait(0.05)
             result = bench.run("N10 G01 X20 F600\nN20 M30\n")
+            bench._door.wait(0.0)
+            assert mute.stdout is not None
+            assert mute.stdout.readline() == b"detached\n"
             mute.communicate()
         assert [error.id for error in result.errors] == [PLC_STOPPED]
         assert not bench._door.attached("mute")

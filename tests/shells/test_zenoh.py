@@ -383,6 +383,13 @@ def test_a_put_that_is_refused_is_counted_and_reported(
     assert ask(bench, elsewhere, with_client, "hli_errors") == {"refused": 1, "last": [record]}
 
 
+@pytest.mark.parametrize("key", ["io/probe", "io/probe/ch2/input", "io/nothing", "hli/layout", "cnc/state"])
+def test_what_only_the_bench_puts_is_refused_to_clients(bench: SmallBench, elsewhere: Any, key: str) -> None:
+    record = ask(bench, elsewhere, plain_put, f"demo/{key}", b"\x01", "zenoh/bytes")
+    assert (record["path"], record["reason"]) == (key, "written by the bench, a client may only read it")
+    assert bench.server.refused == 1
+
+
 def test_a_unit_of_a_plc_is_refused_to_who_puts_only_whatever_he_calls_himself(
     bench: SmallBench, elsewhere: Any
 ) -> None:

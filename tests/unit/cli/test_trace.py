@@ -97,6 +97,15 @@ def test_show_of_one_channel_one_axis_some_time(
     assert instants(every[1:]) == [cycle * 1_000_000 for cycle in range(1, 301)]
 
 
+def test_frames_and_writes_of_other_axes_are_not_of_one_axis(
+    traces: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = lines_of(capsys, traces[0], "--channel", "can", "--channel", "plc", "--axis", "Z", "--to", "0.5")
+    assert {line.rpartition("node ")[2] for line in lines if "node " in line} == {"3"}
+    assert {line.partition("ax/")[2].partition("/")[0] for line in lines if " ax/" in line} <= {"3"}
+    assert any(line.endswith("NMT") for line in lines)
+
+
 def test_show_names_axis_and_block_of_what_the_cnc_said(
     traces: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
 ) -> None:

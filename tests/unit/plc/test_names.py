@@ -102,6 +102,13 @@ def test_a_wrong_name_is_told_with_its_path_and_near_names(program: Any, access:
     assert program.changes() == {}
 
 
+def test_a_structure_has_no_value(program: Any) -> None:
+    assert repr(program.hli.ax[1].lr_state) == "<ax/1/lr_state>"
+    for structure in (program.hli.ax[1].lr_mc_control.timestamp, io_root([PROBE])[0].probe.ch2):
+        with pytest.raises(TypeError, match=" is a structure and has no value; it has "):
+            bool(structure)
+
+
 def test_a_missing_axis_is_told_with_those_there_are(program: Any) -> None:
     with pytest.raises(KeyError, match=r"no ax\[2\] on this machine; there are 1, 3"):
         program.hli.ax[2]

@@ -124,6 +124,7 @@ def test_a_member_comes_packed_or_as_text(
     ("path", "payload", "is_text", "reason"),
     [
         (f"{UNIT}/command_w", b"\x01\x00", False, "2 bytes, BOOL takes 1"),
+        (f"{UNIT}/command_w", b"\x02", False, "2 is no BOOL: 0 or 1 expected"),
         (f"{TIME}/command_w", b"\x01", False, "1 bytes, SGN64 takes 8"),
         (f"{TIME}/command_w", b"soon", True, "'soon' is no SGN64"),
         (f"{TIME}/command_w", b"1.5", True, "'1.5' is no SGN64"),

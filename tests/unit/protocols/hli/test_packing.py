@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hli_bench.base.errors import InputError
+from hli_bench.protocols.hli.access import unfit
 from hli_bench.protocols.hli.layout import Layout
 from hli_bench.protocols.hli.packing import CommandsPacking, as_text, pack_image, unpack_image
 from hli_bench.wire.hli import Commands, Write
@@ -42,6 +43,13 @@ def test_commands_come_back_as_they_went(cycle: Any, entries: Any) -> None:
 def test_a_malformed_message_is_told_with_its_place(message: Any, reason: Any) -> None:
     with pytest.raises(InputError, match=reason):
         PACKING.unpack("p", message)
+
+
+def test_a_byte_that_is_no_bool_stays_what_it_is() -> None:
+    for byte, value in ((0, False), (1, True), (7, 7)):
+        (write,) = PACKING.unpack("p", struct.pack("<QHB", 1, PROBE.id, byte)).writes
+        assert write.value is value or write.value == value == 7
+        assert bool(unfit(PROBE, write.value)) == (byte > 1)
 
 
 def test_a_command_that_does_not_fit_is_not_packed() -> None:

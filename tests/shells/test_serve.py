@@ -193,8 +193,8 @@ def test_ctrl_c_of_run_ends_the_program_and_leaves_the_bench_up(
     assert bench.running()
     run.interrupt()
     assert run.end() == 130
-    assert run.err[0] == f"stopped: the bench at {bench.endpoint} has aborted {endless.name} and stays up"
-    assert run.err[1].startswith(f"{endless.name}: aborted, ")
+    assert run.err[0] == f"stopped: the bench at {bench.endpoint} has aborted {endless} and stays up"
+    assert run.err[1].startswith(f"{endless}: aborted, ")
     assert result()["status"] == "aborted"
     assert bench.state()["state"] == "ready"
 

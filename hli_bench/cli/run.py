@@ -44,6 +44,8 @@ EXIT_STATUS: Final[Mapping[str, int]] = {"completed": 0, "error": 1, "aborted": 
 OUTPUTS: Final = ("result", "trace", "report", "can_log")
 RECORDED: Final = ("trace", "can_log")
 """Those that are written while the program runs."""
+OF_A_MACHINE: Final = (".toml", ".lis", ".py", ".eds")
+"""How files of a machine folder end that a bench may read."""
 OF_AN_OWN_BENCH: Final = (
     "machine",
     "set",
@@ -141,12 +143,12 @@ def prepare(arguments: argparse.Namespace, read: Iterable[Path]) -> None:
 
 
 def _files_read(options: BenchOptions) -> Iterator[Path]:
-    """Yield what a bench is made of: PLC scripts, all files of the machine folder, files that settings name."""
+    """Yield what a bench is made of: PLC scripts, what may belong to the machine folder, files that settings name."""
     from hli_bench.bench.folder import machine_folder
 
     folder = machine_folder(options.machine)
     yield from map(Path, options.plc or ())
-    yield from folder.iterdir()
+    yield from (path for path in folder.iterdir() if path.suffix in OF_A_MACHINE)
     for value in options.settings.values():
         if isinstance(value, str):
             yield from (Path(value), folder / value)

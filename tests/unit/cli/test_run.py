@@ -67,6 +67,16 @@ def test_no_file_of_a_run_is_written_over(
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == texts
 
 
+def test_what_an_earlier_run_left_in_the_machine_folder_is_written_over(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    (tmp_path / "own.nc").write_text("N10 M30\n")
+    (tmp_path / "machine.toml").write_text("[axis.X]\nstart_mm = 0\nkopf.achs_nr = 1\n")
+    for _ in range(2):
+        options = [f"--result={tmp_path}/r.json", f"--trace={tmp_path}/t.mcap", "--machine", str(tmp_path)]
+        assert main(["run", str(tmp_path / "own.nc"), *options]) == 0, capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("redirected", "status", "said"),
     [

@@ -122,6 +122,13 @@ def test_a_drive_that_comes_back_while_the_path_brakes_stands_still(limit_s: flo
         assert bench.run("N10 G01 X300 F6000\nN20 M30\n").completed
 
 
+@pytest.mark.parametrize("limit_s", [1.512, 1.513, 1.514])
+def test_a_drive_that_trips_while_a_reset_takes_it_back_is_reset_as_well(limit_s: float) -> None:
+    with Bench("demo", {"plant.stop.X.at_mm": 400, "plant.stop.X.side": "above"}, plc=[]) as bench:
+        bench.run("N10 G90 G01 X380 F30000\nN20 X600 Y100 F30000\nN40 M30\n", limit_s=limit_s)
+        assert errors(bench.run(NEXT)) == []
+
+
 @pytest.mark.parametrize("between", ["", "N15 G01 Z120\n"])
 def test_a_drive_probes_again_at_once(between: str) -> None:
     program = f"N05 G90 G01 Z120 F9000\nN10 G100 Z90 F1000\n{between}N20 G100 Z80\nN30 M30\n"

@@ -107,7 +107,9 @@ TABLE: Final[Table[Drive]] = {
     "configure": Phase(_configure, (Then(_configured, "start"),)),
     "start": Phase(_start_node, (Then(_state("switch on disabled"), "shut down"),)),
     "reset": Phase(_controlword(Command.RESET_FAULT), (Then(_state("switch on disabled"), "shut down"),)),
-    "disable": Phase(_follow, (Then(_state("ready to switch on"), "switch on"),)),
+    "disable": Phase(
+        _follow, (Then(_state("ready to switch on"), "switch on"), Then(_state("fault"), "reset"))
+    ),
     "shut down": Phase(_controlword(Command.SHUT_DOWN), (Then(_state("ready to switch on"), "switch on"),)),
     "switch on": Phase(_controlword(Command.SWITCH_ON), (Then(_state("switched on"), "enable"),)),
     "enable": Phase(

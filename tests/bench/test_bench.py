@@ -8,6 +8,7 @@ import pytest
 from hli_bench import Bench
 from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.bench import plc_ports
+from hli_bench.bench.bench import WITHOUT_MOTION_PACED
 
 
 def test_a_program_that_breaks_off_leaves_no_gap_in_time() -> None:
@@ -38,7 +39,8 @@ def test_blocks_without_motion_take_cycles_so_that_a_paced_bench_keeps_its_time(
 
 
 def test_blocks_between_motion_do_not_change_it_in_real_pace() -> None:
-    program = ("N10 G91 G01 X0.5 F6000\n" + "N20 P1=1\n" * 20) * 20 + "N30 M30\n"
+    between = "N20 P1=1\n" * (WITHOUT_MOTION_PACED - 2)
+    program = f"N10 G91 G01 X0.02 F6000\n{between}" * 40 + "N30 M30\n"
     cycles = []
     for pace in ("free", "real"):
         with Bench("demo", plc=[], pace=pace) as bench:
@@ -50,11 +52,12 @@ def test_blocks_between_motion_do_not_change_it_in_real_pace() -> None:
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
 def test_the_measuring_type_of_the_channel_list_is_that_of_a_program_that_sets_none(kind: int) -> None:
     face = {"plant.probe.Z.face_mm": 100, "plant.probe.Z.material": "below"}
-    program = "N20 G90 G100 Z20 F600\nN30 M30\n"
+    program = 'N20 G90 G100 Z20 F600\nN30 #MSG["%f", V.G.MEAS_TYPE]\nN40 M30\n'
     with Bench("demo", face | {"channel.messtyp": kind}) as bench:
         listed = bench.run(program)
     with Bench("demo", face) as bench:
         programmed = bench.run(f"N10 #MEAS MODE[{kind}]\n{program}")
+    assert [float(message.text) for message in listed.messages] == [kind]
     assert listed.measurements
     assert (listed.measurements, listed.variables) == (programmed.measurements, programmed.variables)
 

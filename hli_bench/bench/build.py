@@ -1,6 +1,6 @@
 """A machine's configuration becomes nodes: kernel, drives, plant, terminals."""
 
-from typing import Any, Final
+from typing import Any
 
 from hli_bench.base.errors import InputError
 from hli_bench.bench.config import MachineConfig
@@ -12,9 +12,6 @@ from hli_bench.plant import build as plant
 from hli_bench.runtime.machine_side import DriveNode, Forced, MachineSide
 from hli_bench.terminals.terminal import Terminal, type_of
 from hli_bench.wire.images import TerminalLayout
-
-FAULT: Final = "fault"
-"""What drives do at a following error unless they are told otherwise."""
 
 
 def kernel(config: MachineConfig) -> Kernel:
@@ -58,7 +55,7 @@ def drives(config: MachineConfig, servo: Rows) -> list[DriveNode]:
     """Return the drives of a machine on their rows. Raises InputError that names whose model is wrong."""
     built: list[DriveNode] = []
     for axis in config.axes:
-        options = {} if axis.following_error == FAULT else {"following_error": axis.following_error}
+        options = {} if axis.following_error is None else {"following_error": axis.following_error}
         try:
             model = drive_model(axis.drive)
             built.append(model.create(axis.name, axis.node_id, servo[axis.index], options))

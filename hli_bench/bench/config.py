@@ -35,7 +35,7 @@ class AxisConfig:
     number: AxisNumber
     node_id: NodeId
     drive: str
-    following_error: str
+    following_error: str | None
     start_mm: float
     params: AxisParams
 

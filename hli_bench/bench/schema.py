@@ -142,8 +142,9 @@ AXIS: Final = (
     _text("axis.<AXIS>.drive", "drives.models.servo402", "drive model, a module path"),
     _text(
         "axis.<AXIS>.following_error",
-        "fault",
-        "what the drive does when the following error leaves the window 6065 for longer than 6066, beside bit 13",
+        None,
+        "what the drive does, beside bit 13, when the following error leaves the window 6065 for longer than 6066; "
+        "default: what its model does, servo402 a fault",
         ("fault", "status"),
     ),
     _integer("axis.<AXIS>.node_id", None, "CANopen node id; default: the axis number", 1, 127),

@@ -90,21 +90,15 @@ def check_files(arguments: argparse.Namespace) -> int:
 def check_file(path: Path) -> int:
     """Print what a file holds or what is wrong with it."""
     try:
-        described = described_by(path)
+        described = load(path)
+        if is_402(described) and (missing := lacking(described.entries)):
+            raise InputError(f"a CiA 402 drive needs the objects {', '.join(missing)}", file=str(path))
     except InputError as error:
         print(error, file=sys.stderr)
         return error.exit_status
     kind = "CiA 402 drive" if is_402(described) else "CANopen device"
     print(f"{path}: {kind}, {len(described.names)} objects, {len(described.entries)} entries, accepted")
     return 0
-
-
-def described_by(path: Path) -> ObjectDictionary:
-    """Return what an EDS describes. Raises InputError, also for a CiA 402 drive that lacks objects it needs."""
-    described = load(path)
-    if is_402(described) and (missing := lacking(described.entries)):
-        raise InputError(f"a CiA 402 drive needs the objects {', '.join(missing)}", file=str(path))
-    return described
 
 
 def is_402(described: ObjectDictionary) -> bool:

@@ -134,7 +134,7 @@ def test_what_clients_write_during_a_run_is_in_its_trace(
     run.interrupt()
     assert run.end() == 130
     plc = [line.partition("plc ")[2].strip() for line in do("trace", "show", trace, "--channel", "plc")]
-    assert f"client: {position} = 5" in plc
+    assert [line for line in plc if line.startswith("client: ")] == [f"client: {position} = 5"]
     (refused,) = do("trace", "show", trace, "--channel", "refused")
     assert refused.endswith(f" client: {UNIT}/command_w: the unit belongs to PLC 'demo'")
 

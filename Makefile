@@ -34,7 +34,7 @@ pytest: .venv/.dev ## The tests that need no CAN interface
 test-vcan: .venv/.dev ## The tests on a real SocketCAN vcan0, in a virtual machine where the host has none
 	tools/vcan_vm.sh $(BIN)/python -m pytest -m vcan tests/vcan
 
-coverage-req: .venv/.dev ## Which requirement lines a test covers, which are open, which do not apply
+coverage-req: .venv/.dev ## How each requirement line is shown: behaviour, parsing, table; open ones begin with open:
 	$(BIN)/python tools/coverage_req.py
 
 bench: .venv/.dev ## The benchmarks; they print ratios measured side by side

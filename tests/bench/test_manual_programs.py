@@ -67,10 +67,22 @@ def compare(result, expected, tolerance: float) -> None:
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param("meas1", marks=pytest.mark.req(*(f"M-{n:03d}" for n in range(75, 84)))),
-        pytest.param("meas2", marks=pytest.mark.req(*(f"M-{n:03d}" for n in range(84, 91)))),
-        pytest.param("meas3", marks=pytest.mark.req(*(f"M-{n:03d}" for n in range(91, 98)))),
-        pytest.param("meas4", marks=pytest.mark.req(*(f"M-{n:03d}" for n in range(98, 106)))),
+        pytest.param(
+            "meas1",
+            marks=pytest.mark.req(
+                "M-075", "M-076", "M-077", "M-078", "M-079", "M-080", "M-081", "M-082", "M-083"
+            ),
+        ),
+        pytest.param(
+            "meas2", marks=pytest.mark.req("M-084", "M-085", "M-086", "M-087", "M-088", "M-089", "M-090")
+        ),
+        pytest.param(
+            "meas3", marks=pytest.mark.req("M-091", "M-092", "M-093", "M-094", "M-095", "M-096", "M-097")
+        ),
+        pytest.param(
+            "meas4",
+            marks=pytest.mark.req("M-098", "M-099", "M-100", "M-101", "M-102", "M-103", "M-104", "M-105"),
+        ),
     ],
 )
 @pytest.mark.req("M-001", "M-005", "M-007", "M-057", "M-106", "M-181", "M-182", "M-183")

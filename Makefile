@@ -8,6 +8,8 @@ SHELL := /bin/bash
 BIN := .venv/bin
 # VCAN=no leaves the SocketCAN tests out of `make test`, for a computer that can offer no vcan at all.
 VCAN ?= yes
+# How many processes share the tests.
+WORKERS ?= 2
 
 .PHONY: help run test lint pytest test-vcan coverage-req bench lock clean
 
@@ -29,7 +31,8 @@ lint: .venv/.dev ## Lint, format, types, import contracts
 	$(BIN)/lint-imports
 
 pytest: .venv/.dev ## The tests that need no CAN interface
-	$(BIN)/python -m pytest -m "not vcan"
+	$(BIN)/python -m pytest -m "not vcan" -n $(WORKERS) --dist loadfile --ignore tests/shells tests
+	$(BIN)/python -m pytest -m "not vcan" tests/shells  # in real pace too: no other tests beside them
 
 test-vcan: .venv/.dev ## The tests on a real SocketCAN vcan0, in a virtual machine where the host has none
 	tools/vcan_vm.sh $(BIN)/python -m pytest -m vcan tests/vcan

@@ -231,9 +231,13 @@ def test_what_is_set_is_there_when_the_command_is_done(
 def test_the_state_shows_axes_and_drives(capsys: pytest.CaptureFixture[str], served: str) -> None:
     lines = ask(capsys, served, "state")
     assert "machine: demo" in lines
+    state = json.loads("\n".join(ask(capsys, served, "state", "--json")))
+    assert state["machine"] == "demo"
+    (told,) = [axis for axis in state["axes"] if axis["name"] == "Z"]
     (z,) = [line.split() for line in lines if line.strip().startswith("Z ")]
-    assert "300.0" in z
-    assert json.loads("\n".join(ask(capsys, served, "state", "--json")))["machine"] == "demo"
+    assert z[:3] == ["Z", "3", str(told["command_mm"])]
+    assert 0.0 < told["command_mm"] <= 300.0  # where the machine starts, or where other tests have moved it
+    assert told["drive"].split()[0] in z
 
 
 def test_a_watch_prints_each_change(capsys: pytest.CaptureFixture[str], served: str) -> None:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from hli_bench.laws.profile import advance, braking_path, ramp
+from hli_bench.laws.profile import TINY, advance, braking_path, ramp
 
 CYCLE = 1e-3
 rates = st.floats(1e6, 5e7)
@@ -39,22 +39,25 @@ def _run(
 
 @settings(max_examples=50, deadline=None)
 @given(lengths, feeds, rates, rates, rates, rates, splits)
+@example(27028.456575876073, 3518096.187349916, 3.38e7, 1.009e7, 6936835.581935832, 5674104.2336521875, 0.0)
 def test_to_a_standstill(
     length: float, feed: float, low: float, high: float, down_low: float, down_high: float, split: float
 ) -> None:
+    """A rest of TINY counts as done: what could still brake within it, v^2 = 2 a TINY, may go in one jump."""
     s0, v0 = 0.0, 0.0
     up, down = max(low, high), max(down_low, down_high)
+    jump = (2.0 * down * TINY) ** 0.5
     for s, v, left in _run(length, feed, 0.0, low, high, down_low, down_high, split):
         assert s0 <= s <= length
         assert 0.0 <= v <= feed * (1 + 1e-9)
         time = CYCLE - left
         assert v - v0 <= up * time * (1 + 1e-6) + 1e-3
-        assert v0 - v <= down * time * (1 + 1e-6) + 1.0
-        assert braking_path(v, 0.0, down_low, down_high, split) <= length - s + 1e-3 + 1e-9 * length
+        assert v0 - v <= down * time * (1 + 1e-6) + jump + 1e-3
+        assert braking_path(v, 0.0, down_low, down_high, split) <= length - s + TINY + 1e-12 * length
         assert s - s0 <= max(v, v0, feed) * CYCLE * (1 + 1e-9)
         s0, v0 = s, v
     assert s0 == length
-    assert v0 <= 0.1
+    assert v0 == 0.0
 
 
 @settings(max_examples=40, deadline=None)

@@ -74,4 +74,5 @@ def test_case(name: str, decode: Any, state: Any) -> None:
     expected = folder / "expected.blocks"
     if os.environ.get("HLI_BENCH_WRITE_GOLDEN"):
         expected.write_text("\n".join(got) + "\n")
+        pytest.fail(f"{expected} is written; a run that writes its expectations shows nothing")
     assert got == expected.read_text().splitlines()

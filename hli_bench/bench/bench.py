@@ -18,7 +18,7 @@ from hli_bench.bench.plc_ports import LocalPlc, loaded
 from hli_bench.bench.program import opened
 from hli_bench.bench.result import Collector, Result, measurements
 from hli_bench.bench.standstill import Standstill
-from hli_bench.bench.unprobed import nothing_to_probe
+from hli_bench.bench.unprobed import remarks, unmeasured
 from hli_bench.kernel.decoder import WITHOUT_MOTION
 from hli_bench.kernel.records import Emitted
 from hli_bench.laws import native
@@ -218,14 +218,14 @@ class Bench:
     ) -> Result:
         """Return the result of a program that began behind cycle `first`; what `holding` names held its motion."""
         cycles = self.engine.cycle - first
-        variables, measured = self.kernel.channel.variables(), measurements(self.kernel)
         return Result(
             program=name,
             status=status,
             messages=collector.messages,
             errors=collector.errors,
-            variables=variables,
-            measurements=measured,
+            variables=self.kernel.channel.variables(),
+            measurements=measurements(self.kernel),
+            unmeasured=unmeasured(self.config, self.kernel.channel.unmeasured),
             homing=collector.homing,
             sim_s=round(cycles * self.config.cycle_ns * 1e-9, 9),
             wall_s=watch.seconds(),
@@ -234,9 +234,7 @@ class Bench:
                 *(f"motion was held: {element}" for element in holding),
                 *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
                 *self._without_plc(),
-                *nothing_to_probe(
-                    self.config, variables, measured, collector.errors, self.kernel.channel.unserved
-                ),
+                *remarks(self.config, self.kernel.channel.unmeasured),
             ),
             lateness=self._pace.take_part() if self._pace else None,
         )

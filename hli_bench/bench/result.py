@@ -49,6 +49,15 @@ class Measurement:
 
 
 @dataclass(frozen=True, slots=True)
+class NotMeasured:
+    """An axis that a measuring run gave no value, and why: no entry among the measurements stands for it."""
+
+    axis: str
+    block: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class Homing:
     """An axis that was homed: the reference position it took over, and how."""
 
@@ -68,6 +77,7 @@ class Result:
     errors: Sequence[Error]
     variables: Mapping[str, float]
     measurements: Sequence[Measurement]
+    unmeasured: Sequence[NotMeasured] = ()
     homing: Sequence[Homing]
     sim_s: float
     wall_s: float

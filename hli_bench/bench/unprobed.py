@@ -1,61 +1,49 @@
-"""Notices that a measuring run could not find anything: the plant has no face for the probe, or no PLC tells of it."""
+"""Says of measuring runs that gave an axis no value what they lacked: a face, a PLC that tells of it, a signal."""
 
-from collections.abc import Mapping, Sequence
-from typing import Final
+from collections import Counter
+from collections.abc import Sequence
 
-from hli_bench.base.ids import AxisIndex
-from hli_bench.bench.config import AxisConfig, MachineConfig
-from hli_bench.bench.result import Error, Measurement
-from hli_bench.kernel.position_controller.measurement import FIXED_STOP_TYPE
-from hli_bench.manual.axis.fallbacks import effective_signal
-from hli_bench.manual.axis.words import ProbingSignal
-from hli_bench.manual.errors.path_interpolator import FIXED_STOP_NOT_FOUND
+from hli_bench.bench.config import MachineConfig
+from hli_bench.bench.result import NotMeasured
+from hli_bench.kernel.records import Unmeasured
 from hli_bench.plant.settings import PROBE
 
-RUN_STARTED: Final = ("V.A.MERF", "V.A.MEIN")
-"""Variables that a result has of every axis of a measuring run, whatever came of it."""
+
+def reason(config: MachineConfig, one: Unmeasured) -> str:
+    """Return why a measuring run gave an axis no value."""
+    if one.fixed_stop:
+        return "no fixed stop was found on its way"
+    if not has_face(config):
+        name = config.axes[one.axis].name
+        return f"as the plant has no face: plant.probe.{name}.face_mm and plant.probe.{name}.material set one"
+    if one.unserved:
+        return f"as no PLC serves {' and '.join(one.unserved)}"
+    return "no probing signal came on its way"
 
 
-def nothing_to_probe(
-    config: MachineConfig,
-    variables: Mapping[str, float],
-    found: Sequence[Measurement],
-    errors: Sequence[Error],
-    unserved: Mapping[AxisIndex, Sequence[str]],
-) -> list[str]:
-    """Return a remark for each axis that was to probe, and did not: no face at all, no PLC that says so, no signal.
+def has_face(config: MachineConfig) -> bool:
+    """Tell whether anything on the machine can operate the probe."""
+    return any(axis.face for axis in config.plant.axes) or any(
+        fault.target == PROBE for fault in config.faults
+    )
 
-    `unserved` names the control units of each axis that no PLC served, and why.
+
+def unmeasured(config: MachineConfig, found: Sequence[Unmeasured]) -> list[NotMeasured]:
+    """Return what a result says of the axes that got no value, in order."""
+    return [NotMeasured(config.axes[one.axis].name, one.source.name, reason(config, one)) for one in found]
+
+
+def remarks(config: MachineConfig, found: Sequence[Unmeasured]) -> list[str]:
+    """Return a remark for each axis and block that measured nothing.
+
+    What the CNC reports by itself is remarked only where the plant or a PLC is what lacks.
     """
-    settled = {one.axis for one in found} | {
-        one.axis for one in errors if one.id == FIXED_STOP_NOT_FOUND.number
-    }
-    to_probe = [
-        axis
-        for axis in config.axes
-        if axis.name not in settled
-        and all(f"{name}.{axis.name}" in variables for name in RUN_STARTED)
-        and _waits_for_a_face(config, axis)
-    ]
-    if not any(axis.face for axis in config.plant.axes) and all(
-        fault.target != PROBE for fault in config.faults
-    ):
-        return [
-            f"axis {axis.name} measured nothing, as the plant has no face: "
-            f"plant.probe.{axis.name}.face_mm and plant.probe.{axis.name}.material set one"
-            for axis in to_probe
-        ]
-    reported = {one.axis for one in errors}
-    remarks: list[str] = []
-    for axis in to_probe:
-        units = unserved.get(axis.index, ())
-        remarks += [f"axis {axis.name} measured nothing, as no PLC serves {unit}" for unit in units]
-        if not units and axis.name not in reported:
-            remarks.append(f"axis {axis.name} measured nothing: no probing signal came on its way")
-    return remarks
-
-
-def _waits_for_a_face(config: MachineConfig, axis: AxisConfig) -> bool:
-    """Tell whether the event is a touch of the probe and not a fixed stop."""
-    stop = config.channel.messtyp == FIXED_STOP_TYPE or config.channel.meas_fixed_stop_no_error
-    return not stop and effective_signal(axis.params.kenngr) is not ProbingSignal.FIXED_STOP
+    texts: Counter[str] = Counter()
+    for one in found:
+        lacking = not one.fixed_stop and (one.unserved or not has_face(config))
+        if one.reported and not lacking:
+            continue
+        why = reason(config, one)
+        joint = ", " if why.startswith("as ") else ": "
+        texts[f"{one.source.name}: axis {config.axes[one.axis].name} measured nothing{joint}{why}"] += 1
+    return [text if times == 1 else f"{text} ({times} times)" for text, times in texts.items()]

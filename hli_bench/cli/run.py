@@ -38,6 +38,8 @@ RESULT_KEYS: Final = (
     "cycles",
 )
 """What `--result` writes."""
+REMARK_KEYS: Final = ("unmeasured", "notes")
+"""What it also writes when there is anything to remark."""
 PACED_KEYS: Final = ("late_cycles", "worst_lateness_us", "lateness_histogram")
 """What it also writes of a bench in real pace."""
 EXIT_STATUS: Final[Mapping[str, int]] = {"completed": 0, "error": 1, "aborted": 130}
@@ -179,7 +181,8 @@ def finish(result: Mapping[str, Any], file: str | None) -> None:
     for note in result["notes"]:
         print(f"note: {note}", file=sys.stderr)
     if file is not None:
-        keys = (*RESULT_KEYS, *(key for key in PACED_KEYS if key in result))
+        remarked = (key for key in REMARK_KEYS if result.get(key))
+        keys = (*RESULT_KEYS, *remarked, *(key for key in PACED_KEYS if key in result))
         _write(file, json.dumps({key: result[key] for key in keys}, indent=2, ensure_ascii=False) + "\n")
 
 

@@ -36,7 +36,8 @@ class Line:
 class MeasuringRun:
     """G100: motion to ACS targets that ends at the probing event.
 
-    `axes` must deliver a signal (moved axes; with an active #CS all three main axes);
+    `axes` must deliver a signal (moved axes; with an active #CS all three main axes); those of `together`
+    (the main axes under a #CS) have a value only when each of them has delivered one;
     `measuring_type` is the active P-CHAN-00057 value.
     """
 
@@ -45,6 +46,7 @@ class MeasuringRun:
     feed: float
     target: Mapping[AxisIndex, float]
     axes: tuple[AxisIndex, ...]
+    together: tuple[AxisIndex, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

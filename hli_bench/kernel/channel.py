@@ -28,8 +28,8 @@ from hli_bench.kernel.drive_manager.objects import ObjectChannel
 from hli_bench.kernel.hindrances import unserved
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.position_controller import measurement
-from hli_bench.kernel.position_controller.measurement import Probe
-from hli_bench.kernel.records import CncError, MeasuredValue, MessageText
+from hli_bench.kernel.position_controller.measuring_rules import Probe, default_probe
+from hli_bench.kernel.records import CncError, MeasuredValue, MessageText, Unmeasured
 from hli_bench.kernel.watches import cycle_reached, jog_stopped, path_done, segment_reached
 from hli_bench.laws.rows import FOLLOW, SEGMENTS
 from hli_bench.manual.axis.words import Edge, ProbingSignal
@@ -67,15 +67,17 @@ class Channel:
         self._texts: deque[tuple[int, Text]] = deque()
         self._wake: list[int] = []
         self._begin_by: int | None = None
-        self._error_no_signal = core.setup.channel.meas_error_no_signal
+        self._error_no_signal: bool | None = None
         self._probes: dict[AxisIndex, Probe] = {}
         self._measured: dict[AxisIndex, float] = {}
         self._latched: dict[AxisIndex, bool] = {}
         self._delivered: Counter[AxisIndex] = Counter()
         self.measured: list[tuple[MeasuredValue, float]] = []
         """Every value this program has measured, with its V.A.MEAS.PCS.VALUE in mm."""
-        self.unserved: dict[AxisIndex, list[str]] = {}
-        """Units that no PLC served when the last measuring run of an axis began and when it ended, and why."""
+        self.unmeasured: list[Unmeasured] = []
+        """Every axis of a measuring run of this program that came to its end without a value."""
+        self._unserved: dict[AxisIndex, list[str]] = {}
+        """Units that no PLC served when the measuring run of an axis began, and why."""
         self._source = _NOWHERE
         self._segment_source: dict[int, Source] = {}
         self.running = False
@@ -99,10 +101,10 @@ class Channel:
         self._latched.clear()
         self._delivered.clear()
         self.measured.clear()
-        self.unserved.clear()
+        self.unmeasured.clear()
         core = self._core
-        self._probes = {axis.index: measurement.default_probe(core, axis.index) for axis in core.setup.axes}
-        self._error_no_signal = core.setup.channel.meas_error_no_signal
+        self._probes = {axis.index: default_probe(core, axis.index) for axis in core.setup.axes}
+        self._error_no_signal = None
         self._source = _NOWHERE
         self._begin_by = _SOON
         self.running = True
@@ -258,7 +260,7 @@ class Channel:
 
     def _measuring(self, block: MeasuringRun) -> Activity | None:
         for axis in block.axes:
-            self.unserved[axis] = unserved(self._core, axis, self._probes[axis].signal)
+            self._unserved[axis] = unserved(self._core, axis, self._probes[axis].signal)
         run = measurement.begin(self._core, block, self._probes, error_no_signal=self._error_no_signal)
         return None if run is None else Measuring(self._core, self._monitoring, run, self._take)
 
@@ -306,7 +308,7 @@ class Channel:
                 return
             probe = self._probes[axis]
             if settings.reset:
-                self._probes[axis] = measurement.default_probe(core, axis)
+                self._probes[axis] = default_probe(core, axis)
                 continue
             other_input = settings.input is not None and settings.input != probe.input
             if other_input and ProbingSignal.DRIVE in (probe.signal, settings.signal):
@@ -375,12 +377,24 @@ class Channel:
     def _take(self, run: measurement.Run) -> None:
         """Keep what a measuring run delivered; axes without a new value keep their old one."""
         for axis in run.block.axes:
-            now = unserved(self._core, axis, self._probes[axis].signal)
-            self.unserved[axis] = [unit for unit in self.unserved[axis] if unit in now]
             self._latched[axis] = run.before_target.get(axis, False)
+        self.unmeasured += [self._unmeasured(run, axis) for axis in run.missed]
         self._measured |= {axis: mm(value.acs_tenth_um) for axis, value in run.values.items()}
         self._delivered.update(run.values.keys())
         assert self._decoder is not None
         state = self._state()
+        self._decoder.run_ended(state)
         for axis, value in run.values.items():
-            self.measured.append((value, self._decoder.measured_pcs(state, axis)))
+            self.measured.append((value, self._decoder.measured_pcs(axis)))
+
+    def _unmeasured(self, run: measurement.Run, axis: AxisIndex) -> Unmeasured:
+        """Return the record of an axis that got no value; a unit counts as unserved when it was so all the time."""
+        now = unserved(self._core, axis, self._probes[axis].signal)
+        units = tuple(unit for unit in self._unserved.get(axis, ()) if unit in now)
+        return Unmeasured(
+            source=run.block.source,
+            axis=axis,
+            fixed_stop=run.fixed_stop,
+            unserved=units,
+            reported=axis in run.reported,
+        )

@@ -45,6 +45,21 @@ class MeasuredValue:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Unmeasured:
+    """An axis that a measuring run gave no value.
+
+    `fixed_stop`: it was to find a stop; `unserved` names the control units that no PLC served meanwhile, and why;
+    `reported`: the CNC itself says so, by an error or a warning.
+    """
+
+    source: Source
+    axis: AxisIndex
+    fixed_stop: bool
+    unserved: tuple[str, ...]
+    reported: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Homed:
     """An axis has been referenced."""
 

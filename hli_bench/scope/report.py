@@ -29,6 +29,7 @@ def report_html(recording: Recording, result: Mapping[str, Any], machine_name: s
     parts = [
         _header(recording, result, machine_name),
         _measurements(recording, result["measurements"]),
+        _unmeasured(result.get("unmeasured", ())),
         _homing(result["homing"]),
         _texts(result),
         _overview(recording),
@@ -99,6 +100,15 @@ def _measurements(recording: Recording, measurements: Sequence[Mapping[str, Any]
         for one in measurements
     ]
     return f"<section><h2>Measured values</h2>{_table(heads, rows, numbers=(2, 3, 7))}</section>"
+
+
+def _unmeasured(missed: Sequence[Mapping[str, Any]]) -> str:
+    """Return the runs that gave an axis no value, in red: what the program printed of them is an older value."""
+    if not missed:
+        return ""
+    rows = [(one["block"], one["axis"], f"measured nothing: {one['why']}") for one in missed]
+    table = _table(("Block", "Axis", "Text"), rows).replace('<td class="w">', '<td class="w error">')
+    return f"<section><h2>Not measured</h2>{table}</section>"
 
 
 def _homing(homing: Sequence[Mapping[str, Any]]) -> str:

@@ -252,10 +252,46 @@ def test_share_above_one_is_error_51026(make, errors):
 
 
 @pytest.mark.req("M-222", "M-231")
-def test_no_criterion_at_all_is_an_error_of_the_parameters(make, errors):
+def test_without_any_criterion_no_stop_is_found_and_that_is_warned_of(make, errors):
     result = run(make(AT_STOP | {f"{DETECT}.pos_lag_limit": 0}))
 
-    assert errors(result) == [(50529, "Z", "N50")]
+    assert errors(result) == [(70647, "Z", "N50"), (50886, "Z", "N50")]
+    assert not result.measurements
+
+
+BY_SIGNAL = {"axis.Z.kenngr.measure.signal": "FIXED_STOP"}
+
+
+@pytest.mark.parametrize("kind", [1, 2, 3, 4, 7])
+def test_a_stop_by_its_source_is_relieved_whatever_the_type(make, kind):
+    bench = make(AT_STOP | BY_SIGNAL | {"axis.Z.kenngr.vb_messen": 10_000})
+    result = bench.run(f"%p\n#MEAS MODE[{kind}]\nG00 Z100\n{LIMITED}N50 G100 Z110 F600\nN60 M30\n")
+    (value,) = result.measurements
+    bench.advance(300)
+
+    assert result.completed, result.errors
+    assert value.acs_mm == pytest.approx(STOP_MM + press_mm(100), abs=0.01)
+    command = bench.kernel.rows.axis["command"][Z] * 1e-4
+    assert command == pytest.approx(value.acs_mm, abs=1e-3), (
+        "the set point goes back to the measured position"
+    )
+
+
+def test_no_stop_by_its_source_is_an_error(make, errors):
+    free = {"axis.Z.start_mm": 90.0} | BY_SIGNAL
+    result = make(free).run("N50 G90 G100 Z110 F600\nN60 M30\n")
+    assert errors(result) == [(50886, "Z", "N50")]
+    result = make(free | {"channel.meas_fixed_stop_no_error": 1}).run("N50 G90 G100 Z110 F600\nN60 M30\n")
+    assert result.completed
+    assert [(one.axis, one.block) for one in result.unmeasured] == [("Z", "N50")]
+    assert result.notes == ("N50: axis Z measured nothing: no fixed stop was found on its way",)
+
+
+def test_a_stop_beside_another_source_is_an_impermissible_setting(make, errors):
+    result = make(AT_STOP | BY_SIGNAL).run("N50 G90 G100 X10 Z110 F600\nN60 M30\n")
+    assert errors(result) == [(50529, "X", "N50")]
+    assert result.errors[0].values["parameter"] == "kenngr.measure.signal"
+    assert result.errors[0].values["value"] == "PLC_TIMESTAMP"
 
 
 @pytest.mark.req("M-165")

@@ -128,9 +128,13 @@ class Signals(Plc):
     got = {axis for _, axis, _ in values(result)}
 
     assert result.completed, result.errors
-    assert got == {"X", "Y", "Z"} - ({"XYZ"[missing - 1]} if missing else set())
+    assert got == (set() if missing else {"X", "Y", "Z"})
     merf = [result.variables.get(f"V.A.MERF.{axis}", 0.0) for axis in "XYZ"]
-    assert merf == [0.0 if missing == n else 1.0 for n in (1, 2, 3)]
+    assert merf == [0.0 if missing else 1.0] * 3
+    warned = [(one.id, one.severity, one.axis, one.block) for one in result.errors]
+    assert warned == ([(22014, "warning", "XYZ"[missing - 1], "N30")] if missing else [])
+    assert {one.axis for one in result.unmeasured} == (set("XYZ") if missing else set())
+    assert not any(name.startswith("V.A.MESS") for name in result.variables) or not missing
 
 
 @pytest.mark.req("M-046", "M-070", "M-072")

@@ -77,9 +77,12 @@ class Decoder:
         except CncStop as stop:
             yield stop.error
 
-    def measured_pcs(self, state: MachineState, axis: AxisIndex) -> float:
-        """Return V.A.MEAS.PCS.VALUE of an axis that the machine has just measured, mm."""
+    def run_ended(self, state: MachineState) -> None:
+        """Take what a measuring run has left behind, before the next one begins."""
         self._context.measurements.learn(state)
+
+    def measured_pcs(self, axis: AxisIndex) -> float:
+        """Return V.A.MEAS.PCS.VALUE of an axis that the machine has just measured, mm."""
         return self._context.measurements.without_offsets(axis)
 
     def variables(self, state: MachineState) -> dict[str, float]:

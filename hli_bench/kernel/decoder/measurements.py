@@ -10,24 +10,34 @@ from hli_bench.kernel.decoder.coordinates import Coordinates, Frame, rounded
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """What was in force for an axis when its last measuring run began: system, target and offsets in it."""
+    """What was in force for an axis when a measuring run of it began: system, target and offsets in it."""
 
     frame: Frame | None
     target: float
     offset: float
 
 
-class Measurements:
-    """The measuring run that each axis has its value from, and the machine's values seen in its light.
+@dataclass(frozen=True, slots=True)
+class Value:
+    """What an axis has measured last: in axis coordinates, in the system of its run with offsets, and that run."""
 
-    A run in which an axis delivers nothing leaves the axis what it had: value, system and target.
+    acs: float
+    in_system: float
+    run: Run
+
+
+class Measurements:
+    """The value of each axis that has measured one, seen in the light of the run that it comes from.
+
+    A run in which an axis delivers nothing leaves the axis what it had: value, system and target. A value is
+    kept as it was when it came: what other axes measure later does not change it.
     """
 
-    __slots__ = ("_coordinates", "_delivered", "_latched", "_open", "_runs", "state")
+    __slots__ = ("_coordinates", "_delivered", "_latched", "_open", "_values", "state")
 
     def __init__(self, coordinates: Coordinates) -> None:
         self._coordinates = coordinates
-        self._runs: dict[AxisIndex, Run] = {}
+        self._values: dict[AxisIndex, Value] = {}
         self._open: dict[AxisIndex, Run] = {}
         self._delivered: dict[AxisIndex, int] = {}
         self._latched: dict[AxisIndex, bool] = {}
@@ -45,7 +55,8 @@ class Measurements:
         self._latched.update(state.latched)
         for axis, run in self._open.items():
             if state.delivered.get(axis, 0) > self._delivered.get(axis, 0):
-                self._runs[axis] = run
+                acs = rounded(state.measured[axis])
+                self._values[axis] = Value(acs, self._in_system(state, axis, run, acs), run)
         self._open.clear()
         self._delivered.update(state.delivered)
 
@@ -55,7 +66,7 @@ class Measurements:
 
     def has_value(self, axis: AxisIndex) -> bool:
         """Tell whether this program has measured the axis."""
-        return axis in self._runs and self.state is not None and axis in self.state.measured
+        return axis in self._values
 
     def completed(self, axis: AxisIndex) -> bool:
         """V.A.MERF: the event came before the target."""
@@ -63,27 +74,25 @@ class Measurements:
 
     def in_axes(self, axis: AxisIndex) -> float:
         """V.A.MEAS.ACS.VALUE: axis coordinates."""
-        assert self.state is not None
-        return rounded(self.state.measured[axis])
+        return self._values[axis].acs
 
     def with_offsets(self, axis: AxisIndex) -> float:
-        """V.A.MESS: in the system the run took place in, offsets included.
-
-        A main axis that delivered no value under a #CS counts with its command position.
-        """
-        system, main = self._runs[axis].frame, self._coordinates.main
-        if system is None or main is None or axis not in main:
-            return self.in_axes(axis)
-        assert self.state is not None
-        known = {**self.state.command, **self.state.measured}
-        a, b, c = main
-        point = system.from_acs((known.get(a, 0.0), known.get(b, 0.0), known.get(c, 0.0)))
-        return point[main.index(axis)]
+        """V.A.MESS: in the system the run took place in, offsets included."""
+        return self._values[axis].in_system
 
     def without_offsets(self, axis: AxisIndex) -> float:
         """V.A.MEAS.PCS.VALUE: in the system the run took place in, without offsets."""
-        return rounded(self.with_offsets(axis) - self._runs[axis].offset)
+        value = self._values[axis]
+        return rounded(value.in_system - value.run.offset)
 
     def distance(self, axis: AxisIndex) -> float:
         """V.A.MOFFS: probing position less target; an included G101 offset counts as part of the target."""
-        return rounded(self.with_offsets(axis) - self._runs[axis].target)
+        value = self._values[axis]
+        return rounded(value.in_system - value.run.target)
+
+    def _in_system(self, state: MachineState, axis: AxisIndex, run: Run, acs: float) -> float:
+        main = self._coordinates.main
+        if run.frame is None or main is None or axis not in main:
+            return acs
+        a, b, c = (state.measured[one] for one in main)
+        return run.frame.from_acs((a, b, c))[main.index(axis)]

@@ -267,13 +267,17 @@ def _measuring_run(context: Context, words: Words, scanner: Scanner) -> Steps:
     moving = where.move(words.axes, absolute=context.absolute)
     programmed = [axis for axis, _ in words.axes]
     target = where.axis_target(programmed)
-    signals = {*(where.main or ()), *moving} if where.frame is not None else set(moving)
-    axes = tuple(sorted(signals))
+    together = (where.main or ()) if where.frame is not None else ()
     context.measurements.begin(target)
     where.forget(list(target), keep_programmed=True)
     context.moved()
     yield MeasuringRun(
-        source=scanner.block.source, measuring_type=kind, feed=context.feed, target=target, axes=axes
+        source=scanner.block.source,
+        measuring_type=kind,
+        feed=context.feed,
+        target=target,
+        axes=tuple(sorted({*together, *moving})),
+        together=together,
     )
 
 

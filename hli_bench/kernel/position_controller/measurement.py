@@ -14,25 +14,25 @@ from hli_bench.base.units import mm_per_min, tenth_um_from_um_per_s, tenth_um_pe
 from hli_bench.kernel.blocks import MeasuringRun
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.position_controller import probing
+from hli_bench.kernel.position_controller.measuring_rules import (
+    FEED_FROM_AXIS,
+    STROKE_TYPES,
+    Probe,
+    effective_probe,
+    refused,
+    to_fixed_stop,
+)
 from hli_bench.kernel.records import MeasuredValue
 from hli_bench.kernel.sequence import END, Phase, Table, Then, Until, always
 from hli_bench.kernel.watches import Condition, cycle_reached, path_done
 from hli_bench.laws.rows import SEGMENTS
-from hli_bench.manual.axis.fallbacks import (
-    effective_edge,
-    effective_input,
-    effective_probing_offset,
-    effective_signal,
-    fixed_stop_max_delta,
-    fixed_stop_pos_lag_limit,
-    fixed_stop_start_per_mille,
-)
-from hli_bench.manual.axis.words import Edge, ProbingSignal
+from hli_bench.manual.axis.fallbacks import effective_probing_offset
+from hli_bench.manual.axis.words import Edge
+from hli_bench.manual.errors import decoder as decoder_errors
 from hli_bench.manual.errors import path_interpolator as errors
 from hli_bench.manual.errors import path_preparation as preparation_errors
 from hli_bench.manual.errors import position_controller as position_errors
 
-FIXED_STOP_TYPE: Final = 7
 RETRACTION_FEED: Final = 1000.0
 """mm/min of the way back to the measured position after a fixed stop (decided here, decision 0010)."""
 _NEVER: Final = 1 << 62
@@ -40,22 +40,6 @@ ARMING_CYCLES: Final = 500
 """Cycles after which a source that does not get ready is an error (decided here)."""
 ARRIVAL_CYCLES: Final = 20
 """Cycles behind the end of the interpolation in which an event still counts (decided here, decision 0012)."""
-MAIN_AXES: Final = 3
-MAIN_AXIS_NAMES: Final = ("X", "Y", "Z")
-FEED_FROM_AXIS: Final = 2
-MAIN_AXES_ONLY: Final = 4
-STROKE_TYPES: Final = (FEED_FROM_AXIS, MAIN_AXES_ONLY)
-"""Measurement types whose feed P-AXIS-00086 limits."""
-MOST_AXES: Final = {FEED_FROM_AXIS: 1, MAIN_AXES_ONLY: MAIN_AXES}
-
-
-@dataclass(slots=True)
-class Probe:
-    """How one axis is probed: P-AXIS-00516..00518, or what #MEAS made of them."""
-
-    signal: ProbingSignal
-    input: int
-    edge: Edge
 
 
 @dataclass(slots=True)
@@ -65,7 +49,8 @@ class Run:
     core: Core
     block: MeasuringRun
     probes: Mapping[AxisIndex, Probe]
-    error_no_signal: bool
+    error_no_signal: bool | None
+    """What ERR_NO_SIGNAL of #MEAS says, None when the program does not: P-CHAN-00176 and the type decide."""
     pending: dict[AxisIndex, Condition | None]
     """Axes that have not delivered yet, with what to wait for before the motion."""
     values: dict[AxisIndex, MeasuredValue] = field(default_factory=dict)
@@ -77,85 +62,40 @@ class Run:
     before_target: dict[AxisIndex, bool] = field(default_factory=dict)
     events: dict[AxisIndex, Until] = field(default_factory=dict)
     """The probing event of each axis; made once, since an edge has a memory."""
+    first_looks: dict[AxisIndex, Until] = field(default_factory=dict)
+    """That an axis' probe is operated when it is first seen, for sources that may not see it at once."""
+    missed: list[AxisIndex] = field(default_factory=list)
+    """Axes for which the run came to its end without a value."""
+    reported: set[AxisIndex] = field(default_factory=set)
+    """Those of which the CNC itself says so."""
 
     @property
     def fixed_stop(self) -> bool:
-        """Measurement type 7: the event is a mechanical stop, whatever P-AXIS-00516 says."""
-        return self.block.measuring_type == FIXED_STOP_TYPE
-
-
-def default_probe(core: Core, axis: AxisIndex) -> Probe:
-    """Return how an axis is probed by its list."""
-    params = core.axis(axis).params
-    return Probe(effective_signal(params.kenngr), effective_input(params), effective_edge(params.kenngr))
-
-
-def refused(core: Core, block: MeasuringRun) -> bool:
-    """Report what forbids a run before it begins; tell whether anything did."""
-    for index in sorted({*block.target, *block.axes}):
-        axis = core.axis(index)
-        if not axis.params.kenngr.messachse:
-            core.report(errors.NOT_A_MEASUREMENT_AXIS, block.source, axis.number, axis=index)
-            return True
-        if block.measuring_type == FIXED_STOP_TYPE and _stop_refused(core, block, index):
-            return True
-        if block.measuring_type in STROKE_TYPES and axis.params.kenngr.hub_messtaster == 0:
-            core.report(preparation_errors.PROBE_STROKE_ZERO, block.source, axis.number, axis=index)
-            return True
-        if block.measuring_type == MAIN_AXES_ONLY and axis.name not in MAIN_AXIS_NAMES:
-            kind = block.measuring_type
-            core.report(
-                errors.TOO_MANY_MEASURING_AXES, block.source, len(block.target), MAIN_AXES, kind, axis=index
-            )
-            return True
-    most = MOST_AXES.get(block.measuring_type, len(core.setup.axes))
-    if len(block.target) > most:
-        core.report(
-            errors.TOO_MANY_MEASURING_AXES, block.source, len(block.target), most, block.measuring_type
-        )
-        return True
-    if not block.axes:
-        core.report(errors.MEASURING_PATH_TOO_SMALL, block.source)
-        return True
-    return False
-
-
-def _stop_refused(core: Core, block: MeasuringRun, index: AxisIndex) -> bool:
-    """Report detection parameters with which no stop can be told from free motion."""
-    axis = core.axis(index)
-    per_mille = fixed_stop_start_per_mille(axis.params)
-    if per_mille > 1000:
-        core.report(errors.FIXED_STOP_START_TOO_LARGE, block.source, axis.number, per_mille, axis=index)
-        return True
-    if fixed_stop_pos_lag_limit(axis.params) <= 0 and fixed_stop_max_delta(axis.params) < 0:
-        core.report(errors.FIXED_STOP_PARAMETERS, block.source, axis.number, axis=index)
-        return True
-    return False
+        """The event is a mechanical stop."""
+        return to_fixed_stop(self.block, self.probes)
 
 
 def may_begin(core: Core, block: MeasuringRun, probes: Mapping[AxisIndex, Probe]) -> bool:
     """Tell whether all sources of a run can be armed in this cycle; if not they can in the next one."""
-    run = Run(core, block, probes, error_no_signal=False, pending={})
     return all(
         probing.source(probe.signal).free(core, axis, probe.input, probe.edge)
         for axis in block.axes
-        for probe in [_probe(run, axis)]
+        for probe in [effective_probe(block, probes, axis)]
     )
 
 
 def begin(
-    core: Core, block: MeasuringRun, probes: Mapping[AxisIndex, Probe], *, error_no_signal: bool
+    core: Core, block: MeasuringRun, probes: Mapping[AxisIndex, Probe], *, error_no_signal: bool | None
 ) -> Run | None:
     """Arm the sources of a run; None when it cannot begin (reported)."""
-    if refused(core, block):
+    if refused(core, block, probes):
         return None
     run = Run(core, block, probes, error_no_signal, {})
     for axis in block.axes:
         probe = _probe(run, axis)
         if probing.source(probe.signal).blocked(core, axis, probe.edge):
-            number = core.axis(axis).number
-            core.report(errors.PROBE_ALREADY_OPERATED, block.source, number, block.source.number, axis=axis)
-            return None
+            _already_operated(axis, run)
+            return None if core.failed else run
     for axis in block.axes:
         probe = _probe(run, axis)
         run.pending[axis] = probing.source(probe.signal).arm(core, axis, probe.input, probe.edge)
@@ -165,8 +105,19 @@ def begin(
 
 
 def _probe(run: Run, axis: AxisIndex) -> Probe:
-    probe = run.probes[axis]
-    return Probe(ProbingSignal.FIXED_STOP, probe.input, probe.edge) if run.fixed_stop else probe
+    return effective_probe(run.block, run.probes, axis)
+
+
+def _already_operated(axis: AxisIndex, run: Run) -> None:
+    """Report that the level which the edge leads to is there already; the run ends."""
+    core, probe = run.core, _probe(run, axis)
+    level = f"{'TRUE' if probe.edge is Edge.POS else 'FALSE'}, the level behind its edge {probe.edge.value},"
+    number, source = core.axis(axis).number, run.block.source
+    if not core.setup.channel.meas_allow_actuated_probe:
+        core.report(errors.PROBE_ALREADY_OPERATED, source, number, source.number, level, axis=axis)
+        run.reported.add(axis)
+    run.missed.append(axis)
+    run.pending.clear()
 
 
 def _nothing(run: Run) -> None:
@@ -182,7 +133,9 @@ def _start_path(run: Run) -> None:
     }
     put = core.preparation.measuring_run(run.block, _feed(run), offsets)
     if put is None:
-        core.report(errors.MEASURING_PATH_TOO_SMALL, run.block.source)
+        if core.setup.channel.meas_error_no_move_path:
+            core.report(errors.NO_MOTION_INFORMATION, run.block.source)
+        run.missed += run.pending
         return
     run.segment, run.target_path = put
     run.begun = core.dc_now
@@ -240,7 +193,9 @@ def _keep(run: Run, axis: AxisIndex, probe: Probe, position: float, dc_ns: Ns) -
         edge=probe.edge.value,
     )
     run.before_target[axis] = _before_target(run, axis, position)
-    core.emitted.append(run.values[axis])
+    together = run.block.together if axis in run.block.together else (axis,)
+    if all(one in run.values for one in together):
+        core.emitted += [value for one, value in run.values.items() if one in together]
     core.show(axis, "lr_state/measure_value_ok_r", True)
 
 
@@ -265,14 +220,44 @@ def _brake(run: Run) -> None:
 
 def _missed(run: Run) -> None:
     """The path has ended and an axis has not delivered."""
-    core, channel = run.core, run.core.setup.channel
+    core = run.core
+    run.missed += run.pending
     for axis in run.pending:
         number = core.axis(axis).number
         if run.fixed_stop:
-            if not channel.meas_fixed_stop_no_error:
-                core.report(errors.FIXED_STOP_NOT_FOUND, run.block.source, number, axis=axis)
-        elif run.error_no_signal or run.block.measuring_type == FEED_FROM_AXIS:
+            if core.setup.channel.meas_fixed_stop_no_error:
+                continue
+            core.report(errors.FIXED_STOP_NOT_FOUND, run.block.source, number, axis=axis)
+        elif _signal_demanded(run):
             core.report(errors.NO_MEASUREMENT, run.block.source, number, axis=axis)
+        else:
+            continue
+        run.reported.add(axis)
+
+
+def _signal_demanded(run: Run) -> bool:
+    """Tell whether a run without signal is an error: as the program says, else by channel and type."""
+    if run.error_no_signal is not None:
+        return run.error_no_signal
+    return run.core.setup.channel.meas_error_no_signal or run.block.measuring_type == FEED_FROM_AXIS
+
+
+def _all_or_none(run: Run) -> None:
+    """Under a #CS a value needs every main axis: what only some of them latched is not taken over."""
+    latched = [axis for axis in run.block.together if axis in run.values]
+    silent = [axis for axis in run.block.together if axis not in run.values]
+    if not (latched and silent):
+        return
+    for axis in latched:
+        del run.values[axis]
+        run.before_target[axis] = False
+        run.missed.append(axis)
+        run.reported.add(axis)
+        run.core.show(axis, "lr_state/measure_value_ok_r", False)
+    if not run.core.failed:
+        for axis in silent:
+            number = run.core.axis(axis).number
+            run.core.report(decoder_errors.TRANSFORMED_VALUES, run.block.source, number, axis=axis)
 
 
 def _not_ready(run: Run) -> None:
@@ -297,6 +282,7 @@ def _finish(run: Run) -> None:
     for axis in run.block.axes:
         probing.source(_probe(run, axis).signal).disarm(core, axis)
         core.show(axis, "lr_state/measurement_active_r", False)
+    _all_or_none(run)
 
 
 def _after_standstill(run: Run) -> str:
@@ -313,6 +299,8 @@ def _is_ready(axis: AxisIndex, run: Run) -> None:
 
 def arming(run: Run) -> str:
     """Return the phase that a run begins or goes on with: as long as a source is not ready, `arming`."""
+    if run.missed:
+        return "finishing"
     return "arming" if any(one is not None for one in run.pending.values()) else "starting"
 
 
@@ -333,10 +321,19 @@ def _event(axis: AxisIndex, run: Run) -> Until:
     return run.events[axis]
 
 
+def _first_look(axis: AxisIndex, run: Run) -> Until:
+    if axis not in run.first_looks:
+        probe = _probe(run, axis)
+        run.first_looks[axis] = probing.source(probe.signal).first_look(run.core, axis, probe.edge)
+    return run.first_looks[axis]
+
+
 def table(run: Run) -> Table[Run]:
     """Return the phases of a run; each axis that has to deliver is one way out of the phase `running`."""
 
     def events(phase: str) -> Iterator[Then[Run]]:
+        for axis in run.block.axes:
+            yield Then(partial(_first_look, axis), "braking", partial(_already_operated, axis))
         for axis in run.block.axes:
             yield Then(partial(_event, axis), partial(_all_latched, phase), partial(_latch, axis))
 

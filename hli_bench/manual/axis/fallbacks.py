@@ -147,6 +147,11 @@ def fixed_stop_max_delta(axis: AxisParams) -> int:
     return common if common > 0 else -1
 
 
+def has_criterion(axis: AxisParams) -> bool:
+    """Tell whether anything is configured by which a measuring run can know its stop."""
+    return fixed_stop_pos_lag_limit(axis) > 0 or fixed_stop_max_delta(axis) >= 0
+
+
 def effective_probing_offset(kenngr: Kenngr, messtyp: int) -> int:
     """Return the path past the target in 0.1 µm: P-AXIS-00467 for all types but 3, old 00114 for type 2."""
     if messtyp == 3:

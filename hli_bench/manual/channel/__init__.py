@@ -109,6 +109,26 @@ class ChannelParams:
             effect=Effect.EMULATED,
         ),
     )
+    meas_allow_actuated_probe: bool = param(
+        False,
+        Sheet(
+            number="P-CHAN-00312",
+            data_type=DataType.BOOLEAN,
+            doc="A run that finds the probe operated: 0 is error 50052, 1 ends at once without error.",
+            source="TF5200 channel parameters, P-CHAN-00312",
+            effect=Effect.EMULATED,
+        ),
+    )
+    meas_error_no_move_path: bool = param(
+        True,
+        Sheet(
+            number="P-CHAN-00313",
+            data_type=DataType.BOOLEAN,
+            doc="A measuring run without motion: 1 is error 50067, 0 none.",
+            source="TF5200 channel parameters, P-CHAN-00313",
+            effect=Effect.EMULATED,
+        ),
+    )
     meas_pcs_value_no_probe_radius: bool = param(
         False,
         Sheet(

@@ -376,10 +376,12 @@ FIXED_STOP_ACTIVE: Final[ErrorSheet] = program_error(
 FIXED_STOP_RELEASE: Final[ErrorSheet] = program_error(
     "fixed_stop_release", 21_970, "axis {0} moves to a fixed stop and may not be released", "axis name"
 )
-TRANSFORMED_VALUES: Final[ErrorSheet] = program_error(
+TRANSFORMED_VALUES: Final[ErrorSheet] = warning(
     "transformed_values",
     22_014,
-    "an axis of the transformation delivered no signal: measured values cannot be computed",
+    "axis {0} of the transformation delivered no signal: no measured value is taken over",
+    "logical axis number",
+    source=diagnosis(22014),
 )
 HOMING_COUPLE_KINEMATICS: Final[ErrorSheet] = program_error(
     "homing_couple_kinematics", 22_091, "G74 with couple kinematics"

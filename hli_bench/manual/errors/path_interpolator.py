@@ -42,9 +42,10 @@ PROBING_NOT_INITIALISED_POSITION: Final[ErrorSheet] = motion_error(
 PROBE_ALREADY_OPERATED: Final[ErrorSheet] = motion_error(
     "probe_already_operated",
     50_052,
-    "the probe of axis {0} is operated before the run starts",
+    "the probing signal of axis {0} already is {2} before the run starts",
     "logical axis number",
     "block number",
+    "level behind the edge",
     source=diagnosis(50052),
 )
 PROBE_EVENT_TOO_EARLY: Final[ErrorSheet] = motion_error(
@@ -87,6 +88,9 @@ UNKNOWN_MEASURING_TYPE_2: Final[ErrorSheet] = motion_error(
     "measurement type {0} is not known to the interpolator",
     "measurement type",
 )
+NO_MOTION_INFORMATION: Final[ErrorSheet] = motion_error(
+    "no_motion_information", 50_067, "measuring run without motion", source=diagnosis(50067)
+)
 SPEED_LIMIT: Final[ErrorSheet] = motion_error(
     "speed_limit",
     50_118,
@@ -121,8 +125,13 @@ FIXED_STOP_REFERENCE_NOT_FOUND: Final[ErrorSheet] = motion_error(
 FIXED_STOP_PARAMETERS: Final[ErrorSheet] = motion_error(
     "fixed_stop_parameters",
     50_529,
-    "parameters of the run to a fixed stop are wrong, axis {0}",
+    "{1} = {2} of axis {0} does not go with a run to a fixed stop (type {3}, {4} measuring axes)",
     "logical axis number",
+    "parameter",
+    "value",
+    "measurement type",
+    "measuring axes",
+    source=diagnosis(50529),
 )
 MODAL_MEASURING_OPEN: Final[ErrorSheet] = motion_error(
     "modal_measuring_open", 50_573, "modal measuring was not switched off"

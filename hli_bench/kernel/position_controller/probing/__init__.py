@@ -22,6 +22,12 @@ class Source(Protocol):
     def blocked(self, core: Core, axis: AxisIndex, edge: Edge) -> bool:
         """Tell whether the probe is operated before the run begins."""
 
+    def first_look(self, core: Core, axis: AxisIndex, edge: Edge) -> Until:
+        """Return the condition that the probe is operated when it is seen for the first time, in mid-run.
+
+        Before a PLC has spoken its probe cannot be seen, and the run begins.
+        """
+
     def free(self, core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> bool:
         """Tell whether it can be armed; it shows nothing of an earlier run any more, or takes it back by itself."""
 

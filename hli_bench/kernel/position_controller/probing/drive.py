@@ -7,7 +7,7 @@ from hli_bench.base.ids import AxisIndex
 from hli_bench.base.time import Ns
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.position_controller.latches import unwrapped
-from hli_bench.kernel.sequence import Until
+from hli_bench.kernel.sequence import Level, Until
 from hli_bench.kernel.watches import Condition, probe_status
 from hli_bench.manual.axis.words import Edge, TriggerSource
 
@@ -25,6 +25,11 @@ def _shift(probing_input: int) -> int:
 def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:
     """Not to be seen: the level of the probe is not part of the telegram."""
     return False
+
+
+def first_look(core: Core, axis: AxisIndex, edge: Edge) -> Until:
+    """Never met."""
+    return Level(lambda: False)
 
 
 def free(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> bool:

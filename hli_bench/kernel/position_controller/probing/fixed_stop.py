@@ -6,7 +6,7 @@ Source: measurement manual 7.2, P-AXIS-00774..00778.
 from hli_bench.base.ids import AxisIndex
 from hli_bench.base.time import Ns
 from hli_bench.kernel.core import Core
-from hli_bench.kernel.sequence import Until
+from hli_bench.kernel.sequence import Level, Until
 from hli_bench.kernel.watches import Condition, fixed_stop
 from hli_bench.laws.rows import SEGMENTS
 from hli_bench.manual.axis.fallbacks import (
@@ -14,6 +14,7 @@ from hli_bench.manual.axis.fallbacks import (
     fixed_stop_min_time_us,
     fixed_stop_pos_lag_limit,
     fixed_stop_start_distance,
+    has_criterion,
 )
 from hli_bench.manual.axis.words import Edge
 
@@ -21,6 +22,11 @@ from hli_bench.manual.axis.words import Edge
 def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:
     """A stop cannot be operated beforehand."""
     return False
+
+
+def first_look(core: Core, axis: AxisIndex, edge: Edge) -> Until:
+    """Never met."""
+    return Level(lambda: False)
 
 
 def free(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> bool:
@@ -36,6 +42,8 @@ def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Conditio
 def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
     """All criteria in use have held for the minimum time, behind the path at which detection is armed."""
     params = core.axis(axis).params
+    if not has_criterion(params):
+        return Level(lambda: False)
     cycle_us = core.setup.cycle_ns // 1000
     cycles = -(-fixed_stop_min_time_us(params, cycle_us) // cycle_us)
     return fixed_stop(

@@ -25,6 +25,19 @@ def blocked(core: Core, axis: AxisIndex, edge: Edge) -> bool:
     return _level(core, axis) == (edge is Edge.POS)
 
 
+def first_look(core: Core, axis: AxisIndex, edge: Edge) -> Until:
+    """The first level that the PLC hands over in this run is the one behind the edge; the edge itself came before."""
+    seen = _level(core, axis) is not None
+
+    def found_operated() -> bool:
+        nonlocal seen
+        level = None if seen else _level(core, axis)
+        seen = seen or level is not None
+        return level == (edge is Edge.POS)
+
+    return Level(found_operated)
+
+
 def free(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> bool:
     """It shows nothing of an earlier run."""
     return True
@@ -36,13 +49,15 @@ def arm(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Conditio
 
 
 def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
-    """The edge of P-AXIS-00518 in the unit, from one kernel cycle to the next."""
+    """The edge of P-AXIS-00518 in the unit, against the level that the PLC handed over last."""
     before = _level(core, axis)
 
     def edge_came() -> bool:
         nonlocal before
         level = _level(core, axis)
-        came = before is not None and level is not None and level != before and level == (edge is Edge.POS)
+        if level is None:
+            return False
+        came = before is not None and level != before and level == (edge is Edge.POS)
         before = level
         return came
 

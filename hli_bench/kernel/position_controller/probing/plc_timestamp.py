@@ -8,10 +8,10 @@ from hli_bench.base.time import Ns
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.position_controller import history
 from hli_bench.kernel.position_controller.probing import plc
-from hli_bench.kernel.position_controller.probing.plc import arm, blocked, disarm, event, free
+from hli_bench.kernel.position_controller.probing.plc import arm, blocked, disarm, event, first_look, free
 from hli_bench.manual.axis.words import Edge
 
-__all__ = ["arm", "blocked", "disarm", "event", "free", "latched"]
+__all__ = ["arm", "blocked", "disarm", "event", "first_look", "free", "latched"]
 
 UNIT = "lr_mc_control/timestamp"
 UNITS = (plc.UNIT, UNIT)

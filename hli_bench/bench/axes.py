@@ -11,7 +11,8 @@ from hli_bench.bench.parameters import built, listed
 from hli_bench.bench.values import Values
 from hli_bench.manual.axis import AxisParams
 from hli_bench.manual.channel import ChannelParams
-from hli_bench.manual.lists import converted
+from hli_bench.manual.drive_types import DriveType
+from hli_bench.manual.lists import Severity, converted
 from hli_bench.manual.sheet import Value
 from hli_bench.plant.settings import PlantSettings
 from hli_bench.shells.texts import text_of
@@ -84,10 +85,16 @@ def _tree(values: Values, cls: type[P], owner: str) -> P:
         changes.update(taken)
         places.update(dict.fromkeys(taken, given))
     values.places[owner] = places
-    tree = built(cast("Any", cls), tuple((found.values | changes).items()), text, repr(changes))
+    given_values = found.values | changes
+    if cls is AxisParams:
+        # Every drive model of a machine folder is a CANopen one: a list that names no drive type means it.
+        given_values.setdefault("kenngr.antr_typ", DriveType.CANOPEN)
+    tree = built(cast("Any", cls), tuple(given_values.items()), text, repr(changes))
     for path, finding in tree.findings:
-        values.note(places[path].error(finding.message), finding.severity)
-    values.refused += [f"{owner}: {text}" for text in tree.refused]
+        owned = f"{owner}.{finding.message}" if finding.severity is Severity.NOTE else finding.message
+        values.note(places[path].error(owned), finding.severity)
+    for path, not_built in tree.refused:
+        values.refuse(places[path], f"{owner}: {not_built}")
     return cast("P", tree.params)
 
 

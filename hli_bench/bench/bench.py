@@ -22,7 +22,6 @@ from hli_bench.bench.unprobed import remarks, unmeasured
 from hli_bench.kernel.decoder import WITHOUT_MOTION
 from hli_bench.kernel.records import Emitted
 from hli_bench.laws import native
-from hli_bench.manual.lists import Severity
 from hli_bench.plc import Task, period_of
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, Observer
@@ -86,9 +85,8 @@ class Bench:
         if isinstance(plc, str | Path):
             raise InputError(f"plc {str(plc)!r}: expected a list of scripts")
         self.config: MachineConfig = load(machine, settings or {}, with_plcs=plc is None)
-        for note in self.config.notes:
-            if note.severity is Severity.WARNING:
-                on_note(f"warning: {note}")
+        for remark in self.config.remarks():
+            on_note(remark)
         for key in settings or {} if plc else ():
             if key.startswith(("plc.", "plc[")):
                 on_note(

@@ -1,6 +1,6 @@
 """What a machine is built from: axes, PLC tasks, faults and the whole as frozen records."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
@@ -11,7 +11,7 @@ from hli_bench.base.time import NS_PER_US, Ns
 from hli_bench.manual.axis import AxisParams
 from hli_bench.manual.channel import ChannelParams
 from hli_bench.manual.drive_types import AxisType
-from hli_bench.manual.lists import Finding
+from hli_bench.manual.lists import Finding, Severity
 from hli_bench.plant.settings import PlantSettings
 from hli_bench.terminals.settings import Channel, TerminalSettings
 from hli_bench.terminals.terminal import type_of
@@ -68,7 +68,7 @@ class FaultConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MachineConfig:
-    """A machine as it is to be built. `notes`: warnings about lists that were accepted."""
+    """A machine as it is to be built. `notes`: what is to be said of lists that were accepted."""
 
     name: str
     folder: Path
@@ -96,6 +96,18 @@ class MachineConfig:
     def channels(self) -> tuple[Channel, ...]:
         """Return the inputs of all terminals, in the order of their rows."""
         return tuple(channel for one in self.terminals for channel in type_of(one).channels(one))
+
+    def remarks(self) -> Iterator[str]:
+        """Yield what people are told of the lists: each warning, and in one line what changes nothing."""
+        unused = []
+        for note in self.notes:
+            if note.severity is Severity.WARNING:
+                yield f"warning: {note}"
+            else:
+                path, _, _ = note.message.partition(":")
+                unused.append(f"{path} ({note.place()})")
+        if unused:
+            yield f"note: given, and nothing in this bench uses it: {', '.join(unused)}"
 
     def axis(self, name: str) -> AxisConfig:
         """Return the axis of that name. Raises InputError when there is none."""

@@ -6,7 +6,6 @@
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Final
 
 from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.base.loading import data_file
@@ -17,8 +16,6 @@ from hli_bench.bench.parts import faults_of, plant_of, plcs_of, terminals_of
 from hli_bench.bench.sources import Given, override, toml_text, toml_values
 from hli_bench.bench.values import MACHINE_FILE, Values
 from hli_bench.plant.build import signal_names
-
-BUILT_FAULTS: Final = frozenset({"probe_stuck"})
 
 
 def machine_folder(machine: str | Path) -> Path:
@@ -90,9 +87,8 @@ def _machine(values: Values, file: Mapping[str, Given], *, with_plcs: bool) -> M
     values.machine = _config(values, file, with_plcs=with_plcs)
     _finish(values)
     assert values.machine is not None
-    faults = [f"fault {fault.kind}" for fault in values.machine.faults if fault.kind not in BUILT_FAULTS]
-    if not_built := [*values.refused, *faults]:
-        raise NotEmulated("; ".join(not_built))
+    if values.refused:
+        raise NotEmulated("\nNotEmulated: ".join(map(str, values.refused)))
     return values.machine
 
 

@@ -14,7 +14,8 @@ class Tree(NamedTuple):
 
     params: Any
     findings: Sequence[tuple[str, Finding]]
-    refused: Sequence[str]
+    refused: Sequence[tuple[str, str]]
+    """What is not built: path of the value, and the text that says so."""
 
 
 @lru_cache(maxsize=256)
@@ -24,7 +25,7 @@ def built(cls: Any, values: tuple[tuple[str, Value], ...], *exact: str) -> Tree:
     `exact` are the texts they come from: they tell values apart that are equal and not the same (0.0 and -0.0).
     """
     params = build(cls, dict(values))
-    return Tree(params, check_values(cls, dict(values)), refusals(params))
+    return Tree(params, check_values(cls, dict(values)), refusals(cls, dict(values)))
 
 
 class Listed(NamedTuple):

@@ -19,6 +19,7 @@ from hli_bench.terminals.terminal import type_of
 
 LINEAR_PITCH_MM: Final = 10.0
 ROTARY_PITCH_DEG: Final = 36.0
+BUILT_FAULTS: Final = frozenset({"probe_stuck"})
 
 
 def plant_of(values: Values, axes: Sequence[AxisConfig]) -> PlantSettings:
@@ -174,7 +175,9 @@ def faults_of(values: Values) -> tuple[FaultConfig, ...]:
             values.fail(_entry(values, table), f"{table}.kind: is missing")
             continue
         if values.value(f"{table}.when"):
-            values.refused.append(f"{table}.when: faults at a condition")
+            values.refuse(values.given[f"{table}.when"], f"{table}.when: faults at a condition")
+        if kind not in BUILT_FAULTS:
+            values.refuse(values.given[f"{table}.kind"], f"{table}.kind: fault {kind}")
         value = values.value(f"{table}.value")
         if kind == "probe_stuck" and value not in (0.0, 1.0):
             given = values.given[f"{table}.value"]

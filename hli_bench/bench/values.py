@@ -44,8 +44,8 @@ class Values:
     """List parameters that stand in machine.toml or an override, by owner (`channel`, `axis.Z`)."""
     places: dict[str, Mapping[str, Given]] = field(default_factory=dict)
     """Where the list parameters of each owner stand."""
-    refused: list[str] = field(default_factory=list)
-    """Values that the bench cannot emulate."""
+    refused: list[InputError] = field(default_factory=list)
+    """Values that the bench cannot emulate, with their places."""
 
     def begin_with(self, plain: "Values") -> None:
         """Take over what was found of the same folder without overrides."""
@@ -101,6 +101,10 @@ class Values:
         self.errors.append(
             given.error(message) if given else InputError(message, str(self.folder / MACHINE_FILE))
         )
+
+    def refuse(self, given: Given, message: str) -> None:
+        """Keep a value that is right and asks for something that is not built."""
+        self.refused.append(given.error(message))
 
     def value(self, path: str) -> Any:
         """Return a value, in the type of its key, or the default of its key."""

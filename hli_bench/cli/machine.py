@@ -73,7 +73,7 @@ def check_machine(arguments: argparse.Namespace) -> int:
     config = load(machine_name(arguments.machine, ""), parse_set(arguments.set or []))
     check_named(config)
     for note in config.notes:
-        print(f"{note.file}:{note.line}: {note.severity}: {note.message}")
+        print(f"{note.place()}: {note.severity}: {note.message}")
     print(
         f"{config.folder}: {len(config.axes)} axes ({', '.join(axis.name for axis in config.axes)}), "
         f"{len(config.terminals)} terminals, {len(config.plcs)} PLC tasks, accepted"

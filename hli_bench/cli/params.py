@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Iterator, Mapping
+from enum import IntEnum, IntFlag
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,7 +16,6 @@ from hli_bench.manual.channel import ChannelParams
 from hli_bench.manual.drive_types import DriveType
 from hli_bench.manual.lists import Severity, parse_list, refusals
 from hli_bench.manual.sheet import Effect, Entry
-from hli_bench.manual.trees import build
 
 KINDS: Final[Mapping[str, type[Any]]] = {"axis": AxisParams, "channel": ChannelParams}
 EFFECTS: Final[Mapping[Effect, str]] = {
@@ -100,7 +100,7 @@ def sheet_rows(kind: str, entry: Entry) -> Iterator[tuple[str, str]]:
         "axis types": ", ".join(AXIS_TYPES[letter] for letter in sheet.axis_types) if kind == "axis" else "",
         "drive types": _drive_types(sheet.drive_types) if kind == "axis" else "",
         "effect": EFFECTS[sheet.effect],
-        "not emulated": ", ".join(map(str, sheet.not_emulated)),
+        "not emulated": ", ".join(map(_shown, sheet.not_emulated)),
         "replaces": ", ".join(map(_named, sheet.replaces)),
         "replaced by": _named(sheet.replaced_by) if sheet.replaced_by else "",
         "also spelt": ", ".join(sheet.aliases),
@@ -134,8 +134,10 @@ def _named(number: str) -> str:
 
 
 def _shown(value: object) -> str:
-    if isinstance(value, bool):
-        return str(int(value))
+    if isinstance(value, IntFlag):
+        return f"{value:#x} ({value.name})"
+    if isinstance(value, IntEnum):
+        return f"{value.value} ({value.name})"
     if isinstance(value, int):
         return str(int(value))
     return str(value) or "(empty)"
@@ -166,8 +168,8 @@ def check_list(path: Path, kind: str | None) -> int:
         print(f"{path}:{finding.line}: {finding.severity}: {finding.message}", file=stream)
     if errors:
         return BAD
-    for text in refusals(build(cls, parsed.values)):
-        print(f"{path}: note: NotEmulated: {text}")
+    for refused, text in refusals(cls, parsed.values):
+        print(f"{path}:{parsed.lines[refused]}: note: NotEmulated: {text}")
     print(f"{path}: {ARTICLE[kind]} with {len(parsed.values)} parameters, accepted")
     return 0
 

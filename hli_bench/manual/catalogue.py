@@ -49,6 +49,13 @@ class Catalogue:
         """Entries by number (`P-AXIS-00516`)."""
         return {entry.sheet.number: entry for entry in self.entries if entry.sheet.number}
 
+    @cached_property
+    def unbuilt_defaults(self) -> tuple[Entry, ...]:
+        """Parameters of array elements whose default asks for something that is not built."""
+        return tuple(
+            one for one in self.entries if "]." in one.path and one.default in one.sheet.not_emulated
+        )
+
     def find(self, text: str) -> Entry | None:
         """Return the parameter meant by a number or a path, with or without indices."""
         pattern = PLACEHOLDER.sub("[]", INDEX.sub("[]", text))

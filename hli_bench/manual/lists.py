@@ -15,7 +15,7 @@ from hli_bench.manual.axis.fallbacks import effective_signal, permitted_inputs
 from hli_bench.manual.catalogue import INDEX, PLACEHOLDER, Catalogue, catalogue, convert, named
 from hli_bench.manual.channel import ChannelParams
 from hli_bench.manual.drive_types import AxisMode
-from hli_bench.manual.sheet import Effect, Value
+from hli_bench.manual.sheet import Effect, Entry, Value
 from hli_bench.manual.trees import build, converted, flatten, refusals, value_at, with_value
 
 __all__ = [
@@ -36,6 +36,7 @@ __all__ = [
 
 FILLER: Final = re.compile(r"^\.{2,}$")
 PER_MILLE: Final = frozenset({"P-AXIS-00772", "P-AXIS-00777"})
+ONE_OF_SEVERAL: Final = ("getriebe[", "lr_hw[")
 END: Final = frozenset({"end", "ende"})
 
 
@@ -62,6 +63,10 @@ class Finding:
 
     def __str__(self) -> str:
         return str(self.as_error())
+
+    def place(self) -> str:
+        """Return file and line, as far as they are known."""
+        return ":".join(str(part) for part in (self.file, self.line) if part)
 
     def as_error(self) -> InputError:
         """Return the finding as the usage error to raise."""
@@ -161,12 +166,18 @@ def check_values(cls: type[Any], values: Mapping[str, Value]) -> list[tuple[str,
             found.append((path, Finding(Severity.WARNING, f"{message} ({entry.sheet.number})")))
         if path == "kenngr.achs_mode" and isinstance(value, AxisMode):
             found.extend(_axis_mode(path, value))
-        if entry.sheet.effect is Effect.ACCEPTED and value != entry.default:
-            note = f"{path}: accepted, changes nothing in this bench yet{named(entry.sheet)}"
+        if value != entry.default and not _acts(entry, path):
+            note = f"{path}: accepted, changes nothing in this bench{named(entry.sheet)}"
             found.append((path, Finding(Severity.NOTE, note)))
     if cls is AxisParams:
         found.extend(_axis_rules(values))
     return found
+
+
+def _acts(entry: Entry, path: str) -> bool:
+    """Tell whether a parameter changes anything: the first gear step and hardware set are always the engaged ones."""
+    engaged = not path.startswith(ONE_OF_SEVERAL) or path.partition("]")[0].endswith("[0")
+    return engaged and entry.sheet.effect is not Effect.ACCEPTED
 
 
 def _axis_rules(values: Mapping[str, Value]) -> Iterator[tuple[str, Finding]]:

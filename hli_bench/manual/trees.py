@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
+from enum import IntEnum, IntFlag
 from typing import Any, TypeVar, cast
 
 from hli_bench.manual.axis import AxisParams
 from hli_bench.manual.axis.fixed_stop import PRESETS, DriveIdent
 from hli_bench.manual.axis.words import HomingType
-from hli_bench.manual.catalogue import catalogue, convert
+from hli_bench.manual.catalogue import INDEX, PLACEHOLDER, Catalogue, catalogue, convert
 from hli_bench.manual.drive_types import DriveType
 from hli_bench.manual.sheet import ARRAY, Array, Effect, Entry, Value
 
@@ -114,33 +115,49 @@ def _metadata(node: Any, name: str) -> Mapping[str, Any]:
     return next(item.metadata for item in fields(node) if item.name == name)
 
 
-def refusals(params: Any) -> list[str]:
-    """Return why the bench cannot emulate these parameters: one text per value, for NotEmulated."""
-    found = []
-    for path, entry, value in _given(params):
-        refused = entry.sheet.effect is Effect.REFUSED and value != entry.default
-        if refused or value in entry.sheet.not_emulated:
-            found.append(f"{entry.sheet.number or path}: {path} = {_shown(value)} is not emulated")
+def refusals(cls: type[Any], values: Mapping[str, Value]) -> list[tuple[str, str]]:
+    """Return what of these values the bench cannot emulate: (path of a value, text for NotEmulated).
+
+    An element of an array that is given only in part is refused for its defaults as well.
+    """
+    known = catalogue(cls)
+    found = [
+        (path, text)
+        for path, value in values.items()
+        for text in _refused(known.locate(path).entry, path, value)
+    ]
+    for path, entry, beside in _defaults(known, values):
+        found += [(beside, f"{text}, its default") for text in _refused(entry, path, entry.default)]
     return found
 
 
-def _given(params: Any) -> Iterator[tuple[str, Entry, Value]]:
-    """Yield every parameter of a tree that has its own value: (full path, entry, value)."""
-    for entry in catalogue(type(params)).entries:
-        yield from _elements(params, entry, entry.path.split("."), "")
+def _refused(entry: Entry, path: str, value: Value) -> Iterator[str]:
+    """Yield why a value is not emulated."""
+    sheet = entry.sheet
+    name = f"{sheet.number}: {path}" if sheet.number else path
+    if isinstance(value, IntFlag):
+        for bit in type(value):
+            if bit in value and bit in sheet.not_emulated:
+                yield f"{name} = {value:#x}: {bit.name} ({bit.value:#x}) is not emulated"
+    elif value in sheet.not_emulated or (sheet.effect is Effect.REFUSED and value != entry.default):
+        yield f"{name} = {_shown(value)} is not emulated"
 
 
-def _elements(node: Any, entry: Entry, parts: list[str], prefix: str) -> Iterator[tuple[str, Entry, Value]]:
-    name, bracket, _ = parts[0].partition("[")
-    found = getattr(node, name)
-    items = enumerate(found) if bracket else [(None, found)]
-    for index, item in items:
-        here = f"{prefix}{name}" if index is None else f"{prefix}{name}[{index}]"
-        if len(parts) > 1:
-            yield from _elements(item, entry, parts[1:], here + ".")
-        else:
-            yield here, entry, item
+def _defaults(known: Catalogue, values: Mapping[str, Value]) -> Iterator[tuple[str, Entry, str]]:
+    """Yield what is not given of array elements that are given in part, with the path of what is given."""
+    elements: dict[str, str] = {}
+    for path in values:
+        if "]." in path:
+            elements.setdefault(path[: path.rindex("].") + 1], path)
+    for entry in known.unbuilt_defaults if elements else ():
+        array, _, leaf = PLACEHOLDER.sub("[]", entry.path).rpartition("].")
+        for element, beside in elements.items():
+            if INDEX.sub("[]", element) == f"{array}]" and f"{element}.{leaf}" not in values:
+                yield f"{element}.{leaf}", entry, beside
 
 
 def _shown(value: Value) -> str:
+    """Return a value as lists have it, with the name of a number that has one."""
+    if isinstance(value, IntEnum):
+        return f"{value.value} ({value.name})"
     return str(int(value)) if isinstance(value, bool) else str(value)

@@ -31,7 +31,7 @@ class Function:
         ),
     )
     commu: Communication = param(
-        Communication.ACYCLIC,
+        Communication.CYCLIC,
         Sheet(
             number="P-AXIS-00397",
             data_type=DataType.STRING,
@@ -133,7 +133,7 @@ class Function:
             drive_types=(DriveType.SERCOS, DriveType.PROFIDRIVE, DriveType.CANOPEN),
             doc="Bit mask for writing single bits.",
             source="TF5200 drive command, infosys page 225973131; default as P-AXIS-00727",
-            effect=Effect.ACCEPTED,
+            effect=Effect.REFUSED,
         ),
     )
 
@@ -237,7 +237,7 @@ class Canopen:
             drive_types=(DriveType.CANOPEN,),
             doc="Mode of operation written for cyclic position commands.",
             source=axis_page(118065419),
-            effect=Effect.ACCEPTED,
+            effect=Effect.REFUSED,
         ),
     )
     cyclic_velocity_op_mode: int = param(

@@ -18,6 +18,11 @@ from hli_bench.manual.sheet import (
     param,
 )
 
+EMULATED_MODES = (
+    AxisMode.LINEAR | AxisMode.MODULO | AxisMode.KEINE_AUTO_RPF | AxisMode.ALLOW_RESOLUTION_CHANGE
+)
+"""Bits of P-AXIS-00015 that ask for nothing unbuilt: no spindle homes by itself here, no list changes while running."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FixedStopDetect:
@@ -365,6 +370,7 @@ class Kenngr:
             data_type=DataType.UNS32,
             low=0x1,
             high=0x1FFFFFFF,
+            not_emulated=tuple(one for one in AxisMode if one not in EMULATED_MODES),
             doc="Axis mode bits; exactly one of LINEAR (0x1) and MODULO (0x4).",
             source="homing manual 4.2",
             effect=Effect.EMULATED,
@@ -405,6 +411,7 @@ class Kenngr:
                 ("ANTR_TYP_VIRTUELL", 16),
                 ("ANTR_TYP_CAN", 32),
             ),
+            not_emulated=tuple(one for one in DriveType if one is not DriveType.CANOPEN),
             doc="Drive type; read at start-up only.",
             source=axis_page(117185419),
             effect=Effect.EMULATED,
@@ -464,7 +471,7 @@ class Kenngr:
             axis_types="TR",
             doc="Logical axis number of the gantry master, in the list of the slave.",
             source="TF5200 gantry operation, infosys page 285764875",
-            effect=Effect.ACCEPTED,
+            effect=Effect.REFUSED,
         ),
     )
     gantry_max_diff_reset_locked: int = param(
@@ -476,7 +483,7 @@ class Kenngr:
             axis_types="TR",
             doc="Gantry difference from which no reset is possible.",
             source="TF5200 gantry operation, infosys page 285747979; type and default decided here",
-            effect=Effect.ACCEPTED,
+            effect=Effect.REFUSED,
         ),
     )
     gantry_max_diff_resetable: int = param(
@@ -488,7 +495,7 @@ class Kenngr:
             axis_types="TR",
             doc="Gantry difference that is an error which a reset clears.",
             source="TF5200 gantry operation, infosys page 285747979; type and default decided here",
-            effect=Effect.ACCEPTED,
+            effect=Effect.REFUSED,
         ),
     )
     gantry_offset: int = param(
@@ -500,7 +507,7 @@ class Kenngr:
             axis_types="TR",
             doc="Static offset of the gantry slave to its master.",
             source="TF5200 gantry operation, infosys page 285747979; type and default decided here",
-            effect=Effect.ACCEPTED,
+            effect=Effect.REFUSED,
         ),
     )
     gantry_slave_no_homing: bool = param(
@@ -511,7 +518,7 @@ class Kenngr:
             axis_types="TR",
             doc="A gantry slave is not homed itself; it takes its reference position with the master.",
             source="homing manual 4.2",
-            effect=Effect.ACCEPTED,
+            effect=Effect.REFUSED,
         ),
     )
     gantry_vb_korr: int = param(
@@ -524,7 +531,7 @@ class Kenngr:
             axis_types="TR",
             doc="Speed at which the gantry difference is removed.",
             source=axis_page(117393931),
-            effect=Effect.ACCEPTED,
+            effect=Effect.REFUSED,
         ),
     )
     homing_without_zero_pulse: bool = param(
@@ -596,7 +603,7 @@ class Kenngr:
             replaced_by="P-AXIS-00467",
             doc="Old: travel past the target while no probe event came, type 2 only.",
             source=axis_page(117323787),
-            effect=Effect.ACCEPTED,
+            effect=Effect.EMULATED,
         ),
     )
     mess_signal_achs_steuer: bool = param(

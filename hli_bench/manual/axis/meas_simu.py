@@ -11,7 +11,7 @@ class MeasSimu:
     """`meas_simu.*`."""
 
     meas_simu_mode: int = param(
-        0,
+        1,
         Sheet(
             number="P-AXIS-00112",
             data_type=DataType.SGN32,

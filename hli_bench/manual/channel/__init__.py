@@ -15,10 +15,9 @@ class StartSlope:
             number="P-CHAN-00071",
             data_type=DataType.SGN16,
             choices=(0, 1, 2, 3),
-            not_emulated=(1, 2, 3),
             doc="Acceleration profile of path motions: 0 linear, 1 trapezoidal, 2 sine square, 3 HSC.",
             source="TF5200 oscillating axis, infosys page 222124555",
-            effect=Effect.EMULATED,
+            effect=Effect.REFUSED,
         ),
     )
 

@@ -13,6 +13,7 @@ from hli_bench.bench import folder, schema
 from hli_bench.bench.config import MachineConfig
 from hli_bench.bench.folder import load
 from hli_bench.bench.sources import line_numbers, parse_set
+from hli_bench.manual.drive_types import DriveType
 from hli_bench.plant.settings import Face
 from hli_bench.shells import texts
 
@@ -247,6 +248,78 @@ def test_what_is_not_built_says_so() -> None:
         load("demo", {"fault": [{"kind": "frame_loss"}]})
     with pytest.raises(NotEmulated, match="at a condition"):
         load("demo", {"fault": [{"kind": "probe_stuck", "when": "moving"}]})
+
+
+@pytest.mark.parametrize(
+    ("parameter", "named"),
+    [
+        *(
+            (f"kenngr.antr_typ = {number}", f"P-AXIS-00020: kenngr.antr_typ = {number} ({name})")
+            for number, name in (
+                (1, "CONVENTIONAL"),
+                (2, "SERCOS"),
+                (4, "SIMULATION"),
+                (5, "LIGHTBUS"),
+                (6, "TERMINAL"),
+                (7, "RT_ETHERNET"),
+                (16, "VIRTUAL"),
+                (32, "CAN"),
+            )
+        ),
+        ("kenngr.achs_mode = 0x10001", "P-AXIS-00015: kenngr.achs_mode = 0x10001: GANTRY_MASTER"),
+        ("kenngr.achs_mode = 0x20001", "P-AXIS-00015: kenngr.achs_mode = 0x20001: GANTRY_SLAVE"),
+        ("kenngr.gantry_slave_no_homing = 1", "P-AXIS-00074: kenngr.gantry_slave_no_homing = 1"),
+        ("kenngr.gantry_ax_nr = 1", "P-AXIS-00070: kenngr.gantry_ax_nr = 1"),
+        ("antr.canopen.cyclic_position_op_mode = 1", "P-AXIS-00463"),
+        ('antr.function[3].id = "X"', "P-AXIS-00397: antr.function[3].commu = CYCLIC"),
+    ],
+)
+def test_what_an_axis_asks_for_and_is_not_built_is_named_with_its_place(
+    tmp_path: Path, parameter: str, named: str
+) -> None:
+    path, value = parameter.replace('"', "").split(" = ")
+    place = re.escape(f"NotEmulated: --set: axis.W: {named}")
+    with pytest.raises(NotEmulated, match=place):
+        load(_machine(tmp_path, "[axis.W]\nstart_mm = 1\n"), {f"axis.W.{path}": value})
+    (tmp_path / "w.lis").write_text(f"kopf.achs_nr 1\n{path} {value}\n", encoding="utf-8")
+    folder = _machine(tmp_path, '[axis.W]\nlist = "w.lis"\n')
+    with pytest.raises(NotEmulated, match=re.escape(f"NotEmulated: {folder}/w.lis:2: axis.W: {named}")):
+        load(folder)
+
+
+def test_everything_that_is_not_built_is_named_at_once(tmp_path: Path) -> None:
+    text = "[axis.W]\nkenngr.antr_typ = 2\nkenngr.gantry_offset = 5\n"
+    with pytest.raises(NotEmulated) as caught:
+        load(_machine(tmp_path, text), {"channel.kasto_multi_block": 1})
+    lines = [line.split(": ") for line in str(caught.value).splitlines()]
+    assert [(line[0], line[2], line[3]) for line in lines] == [
+        ("NotEmulated", "channel", "P-CHAN-00029"),
+        ("NotEmulated", "axis.W", "P-AXIS-00020"),
+        ("NotEmulated", "axis.W", "P-AXIS-00073"),
+    ]
+
+
+def test_an_axis_that_names_no_drive_type_has_that_of_its_drive(tmp_path: Path) -> None:
+    config = load(_machine(tmp_path, "[axis.W]\nstart_mm = 1\n"))
+    assert config.axis("W").params.kenngr.antr_typ is DriveType.CANOPEN
+
+
+def test_what_is_given_and_not_used_is_one_remark(tmp_path: Path) -> None:
+    text = "[axis.W]\nkenngr.swe_toleranz = 7\nkenngr.messachse = 1\n"
+    settings = {
+        "channel.meas_pcs_value_no_probe_radius": 1,
+        "axis.W.getriebe[0].slope_profil.a_grenz": 900,
+    }
+    config = load(_machine(tmp_path, text), settings)
+    [remark] = config.remarks()
+    assert remark.startswith("note: given, and nothing in this bench uses it: ")
+    for path in (
+        "channel.meas_pcs_value_no_probe_radius (--set)",
+        "axis.W.kenngr.swe_toleranz (",
+        "axis.W.getriebe[0].slope_profil.a_grenz (",
+    ):
+        assert path in remark
+    assert "messachse" not in remark
 
 
 def test_a_stuck_probe_is_a_record() -> None:

@@ -79,7 +79,7 @@ def test_a_good_list_is_accepted_with_its_remarks(capsys: pytest.CaptureFixture[
     path.write_text("kopf.achs_nr 1\nkenngr.measure.signal PLC_FIRST_EVENT\nEnd\n", encoding="utf-8")
     assert main(["params", "check", str(path)]) == 0
     out = capsys.readouterr().out.splitlines()
-    assert out[0].startswith(f"{path}: note: NotEmulated: P-AXIS-00516: ")
+    assert out[0].startswith(f"{path}:2: note: NotEmulated: P-AXIS-00516: ")
     assert out[-1] == f"{path}: an axis list with 2 parameters, accepted"
 
 

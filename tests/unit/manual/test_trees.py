@@ -104,19 +104,38 @@ def test_fixed_stop_presets_overwrite_the_list_unless_switched_off() -> None:
 
 
 def test_refusals() -> None:
-    assert refusals(AxisParams()) == []
-    assert refusals(ChannelParams()) == []
-    axis = with_value(AxisParams(), "kenngr.ref_ohne_nocken", 1)
-    axis = with_value(axis, "kenngr.measure.signal", "PLC_FIRST_EVENT")
-    axis = with_value(axis, "antr.function[0].commu", "CYCLIC")
-    axis = with_value(axis, "lr_hw[0].cam_direct_access", 0)
-    assert refusals(axis) == [
-        "P-AXIS-00156: kenngr.ref_ohne_nocken = 1 is not emulated",
-        "P-AXIS-00516: kenngr.measure.signal = PLC_FIRST_EVENT is not emulated",
-        "P-AXIS-00397: antr.function[0].commu = CYCLIC is not emulated",
+    assert refusals(AxisParams, {}) == []
+    given = {
+        "kenngr.ref_ohne_nocken": 1,
+        "kenngr.measure.signal": "PLC_FIRST_EVENT",
+        "antr.function[0].commu": "CYCLIC",
+        "lr_hw[0].cam_direct_access": 0,
+        "antr_typ": 2,
+    }
+    assert refusals(AxisParams, converted(AxisParams, given)) == [
+        ("kenngr.ref_ohne_nocken", "P-AXIS-00156: kenngr.ref_ohne_nocken = 1 is not emulated"),
+        ("kenngr.measure.signal", "P-AXIS-00516: kenngr.measure.signal = PLC_FIRST_EVENT is not emulated"),
+        ("antr.function[0].commu", "P-AXIS-00397: antr.function[0].commu = CYCLIC is not emulated"),
+        ("kenngr.antr_typ", "P-AXIS-00020: kenngr.antr_typ = 2 (SERCOS) is not emulated"),
     ]
     for kind in range(1, 8):
-        assert refusals(with_value(ChannelParams(), "messtyp", kind)) == []
-    assert refusals(with_value(ChannelParams(), "prog_start.slope.profile", 3)) == [
-        "P-CHAN-00071: prog_start.slope.profile = 3 is not emulated"
+        assert refusals(ChannelParams, {"messtyp": kind}) == []
+    assert refusals(ChannelParams, {"prog_start.slope.profile": 3}) == [
+        ("prog_start.slope.profile", "P-CHAN-00071: prog_start.slope.profile = 3 is not emulated")
+    ]
+
+
+def test_bits_of_the_axis_mode_are_refused_by_name() -> None:
+    mode = converted(AxisParams, {"kenngr.achs_mode": 0x20141})
+    assert [text for _, text in refusals(AxisParams, mode)] == [
+        "P-AXIS-00015: kenngr.achs_mode = 0x20141: PLANDREHEN (0x40) is not emulated",
+        "P-AXIS-00015: kenngr.achs_mode = 0x20141: GANTRY_SLAVE (0x20000) is not emulated",
+    ]
+    assert refusals(AxisParams, converted(AxisParams, {"kenngr.achs_mode": 0x400104})) == []
+
+
+def test_a_function_is_refused_for_what_is_left_out() -> None:
+    values = converted(AxisParams, {"antr.function[2].id": "ANY", "antr.function[1].commu": "ACYCLIC"})
+    assert refusals(AxisParams, values) == [
+        ("antr.function[2].id", "P-AXIS-00397: antr.function[2].commu = CYCLIC is not emulated, its default")
     ]

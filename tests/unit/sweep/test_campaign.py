@@ -94,7 +94,12 @@ def test_a_program_without_keys_is_left_as_it_is():
         ('error_um = "measurements.0.acs_mm"', 'error_um = "measurements.0.acs"', 13, "'acs' is not one of"),
         ("error_um =", "cycles =", 13, "cannot name a metric"),
         ("[metrics]", '[report]\nby = "cycle_us"\n[metrics]', 13, "report.by: 'cycle_us' is not one of"),
-        ("[grid]", '[grid]\n"fault.0.kind" = ["probe_stuck", "node_off"]', 7, "NotEmulated: fault node_off"),
+        (
+            "[grid]",
+            '[grid]\n"fault.0.kind" = ["probe_stuck", "node_off"]',
+            7,
+            "fault[0].kind: fault node_off",
+        ),
         (
             "[grid]",
             "[grid]\ncycle_us = [1000, 2000]",

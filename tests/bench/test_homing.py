@@ -418,6 +418,21 @@ def test_zero_pulse_is_not_searched_before_the_cam(make, recorder):
     assert position[armed[-1]] >= ZERO_PULSE_MM - 0.2
 
 
+@pytest.mark.req("H-016", "H-049")
+def test_zero_pulse_is_not_searched_behind_the_cam(make, errors, recorder):
+    """A cam of 3 mm, the pulse 2 mm behind its end: nobody may take it, the search is over with the cam."""
+    settings = axis("X", 0.0, **{"getriebe[0].vb_refmax": 20_000}) | {"plant.cam.X.from_mm": -53.0}
+    bench = make(settings, recorder=recorder)
+    result = home(bench)
+    bench.advance(SETTLE)
+
+    assert errors(result) == [(70380, "X", "N10")]
+    assert not result.homing
+    assert not bench.kernel.core.referenced[X]
+    assert -53.2 < truth_mm(bench, X) < -53.0
+    assert recorder.column("probe_function", X)[-1] == 0
+
+
 def test_feed_release_holds_the_homing_axis(make, script, recorder):
     text = """
 from hli_bench.plc import Plc

@@ -40,6 +40,8 @@ WITHOUT_MOTION_PACED: Final = 50
 FOREVER: Final = 1 << 62
 IDLE_S: Final = 0.2
 """Longest wait for a client while time stands still."""
+LONGEST_RUN_S: Final = 86_400.0
+"""Machine time after which a client's program that is not done is aborted: a day (decided here)."""
 ATTACH_S: Final = 30.0
 """Wall time in which a PLC process must have attached."""
 
@@ -268,7 +270,8 @@ class Bench:
         while True:
             while door.programs:
                 request = door.programs.pop(0)
-                result_reply(partial(self.run, request.text, request.name or "program"), request)
+                run = partial(self.run, request.lines(), request.name or "program", limit_s=LONGEST_RUN_S)
+                result_reply(run, request, self._on_note)
             if self._pace is not None or door.waiting:
                 self._advance(lambda: False, self.engine.cycle + 1)
             else:
@@ -277,7 +280,8 @@ class Bench:
     def state(self) -> dict[str, Any]:
         """Return one look at the bench: CNC mode, axes, drives, terminals, PLCs, late cycles."""
         lateness = self._pace.lateness if self._pace else None
-        return state.look(self.config, self.engine, self.terminal_layouts, lateness)
+        net = self._door.counts if self._door is not None else {}
+        return state.look(self.config, self.engine, self.terminal_layouts, lateness, net)
 
     def _advance(self, until: Callable[[], bool], limit: int) -> bool:
         while not until():
@@ -323,7 +327,14 @@ class Bench:
         from hli_bench.shells.zenoh_server import HliServer
 
         layout = self.kernel.image.layout
-        server = HliServer(endpoint, self.config.name, layout, self.terminal_layouts, lockstep=lockstep)
+        server = HliServer(
+            endpoint,
+            self.config.name,
+            layout,
+            self.terminal_layouts,
+            lockstep=lockstep,
+            on_fault=self._on_note,
+        )
         self._closing.enter_context(server)
         self._tap.door = HliDoor(
             server, self.engine, lockstep=lockstep, state=self.state, on_note=self._on_note

@@ -1,16 +1,18 @@
 """The bench's door to the net: what clients ask for over Zenoh, done between cycles."""
 
 import json
+import traceback
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final
 
-from hli_bench.base.errors import InputError, NotEmulated
+from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.base.time import Ns
 from hli_bench.bench.plc_ports import AttachedPlc, period_cycles
 from hli_bench.bench.result import error_of
 from hli_bench.kernel.records import CncError, Emitted
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine
+from hli_bench.shells.zenoh_inbox import FREE_NS, PACED_NS, Budget
 from hli_bench.shells.zenoh_requests import (
     Attach,
     FaultOrder,
@@ -23,6 +25,10 @@ from hli_bench.shells.zenoh_requests import (
 from hli_bench.shells.zenoh_server import HliServer
 from hli_bench.wire.hli import Commands
 
+ANSWERS: Final = 1000
+"""So many clients wait at most to hear that something has taken effect."""
+TRACEBACK_LINES: Final = -10
+"""The last of them say where it was."""
 RESET_CYCLES: Final = 2000
 """Cycles within which the drives must be back after a reset, else it is answered all the same."""
 
@@ -45,6 +51,7 @@ class HliDoor:
         self._server = server
         self._engine = engine
         self._lockstep = lockstep
+        self._budget_ns = FREE_NS if lockstep else PACED_NS
         self._state = state
         self._on_note = on_note
         self._published = -1
@@ -59,20 +66,25 @@ class HliDoor:
     @property
     def watched(self) -> bool:
         """Somebody listens to the image and no attached PLC sets the pace: it is put every cycle."""
-        return not self._server.attached and self._server.image_wanted
+        return not self._server.plcs.attached and self._server.image_wanted
 
     @property
     def waiting(self) -> bool:
         """What a client did, or its departure, has not taken effect yet."""
         return bool(self._written or self._resets) or self._engine.cycle < self._settle_until
 
+    @property
+    def counts(self) -> dict[str, int]:
+        """Writes and requests that were refused, messages that were dropped, since the bench came up."""
+        return {"refused": self._server.refused, "dropped": self._server.dropped}
+
     def attached(self, name: str) -> bool:
         """Tell whether a PLC of that name takes part from another process."""
-        return name in self._server.attached
+        return name in self._server.plcs.attached
 
     def alive(self, name: str) -> bool:
         """Tell whether a PLC of that name has a session, attached or not."""
-        return self._server.alive(name)
+        return self._server.plcs.alive(name)
 
     def after_step(self) -> None:
         """Publish the cycle, do what was asked, let go of PLCs that have departed."""
@@ -82,11 +94,14 @@ class HliDoor:
         if self._written or self._resets:
             self._acknowledge()
         if self._server.stirs or engine.lost:
-            self._attend(self._server.requests())
+            self._attend()
 
     def wait(self, timeout_s: float) -> None:
         """Wait for something to do while time stands still, and do it."""
-        self._attend(self._server.wait_request(timeout_s))
+        requests = self._server.wait_request(timeout_s)
+        self._let_go()
+        for request in requests:
+            self._serve(request)
 
     def publish(self, cycle: int, dc_ns: Ns, io: Mapping[str, bytes]) -> None:
         """Put terminals, changed units and the image of a cycle, once."""
@@ -120,13 +135,30 @@ class HliDoor:
         """Put mode and state of the CNC."""
         self._server.put_state(self._state())
 
-    def _attend(self, requests: Iterable[Request]) -> None:
-        """Do what was asked. Who departed goes first: one who comes may have the name of one who went."""
+    def _attend(self) -> None:
+        """Do what was asked, as far as a cycle has time for it.
+
+        Who departed goes first: one who comes may have the name of one who went.
+        """
         self._let_go()
-        for request in requests:
-            self._serve(request)
+        budget = Budget(self._budget_ns)
+        while requests := self._server.requests(1):
+            self._serve(requests[0])
+            if not budget.left:
+                break
 
     def _serve(self, request: Request) -> None:
+        """Do what was asked; whatever goes wrong in it is the answer to who asked, and the bench goes on."""
+        try:
+            self._do(request)
+        except BenchError:
+            raise
+        except Exception as error:
+            reason = f"the bench failed at this: {type(error).__name__}: {error}"
+            self._on_note(f"{request.key}: {reason}")
+            request.refuse(reason)
+
+    def _do(self, request: Request) -> None:
         match request:
             case WriteRequest():
                 self._write(request)
@@ -140,7 +172,7 @@ class HliDoor:
             case Reset():
                 self._engine.kernel.reset()
                 self._engine.wake()
-                self._resets.append((self._engine.cycle, request))
+                self._remember(self._resets, request, self._engine.cycle)
             case State():
                 request.reply(json.dumps(self._state()))
             case FaultOrder():
@@ -159,7 +191,16 @@ class HliDoor:
         if refusals:
             request.deny(refusals[0].reason)
             return
-        self._written.append((engine.cycle + 1, request))
+        self._remember(self._written, request, engine.cycle + 1)
+
+    def _remember(self, requests: list[tuple[int, Any]], request: Request, cycle: int) -> None:
+        """Remember who is to be answered; of puts only that they are to take effect."""
+        if request.query is None:
+            self._settle_until = max(self._settle_until, self._engine.cycle + 1)
+        elif len(requests) < ANSWERS:
+            requests.append((cycle, request))
+        else:
+            request.deny(f"done, but {ANSWERS} clients wait already to hear when it has taken effect")
 
     def _acknowledge(self) -> None:
         """Answer the writes that the kernel has seen by now, and the resets after which all drives are back."""
@@ -190,39 +231,44 @@ class HliDoor:
             request.refuse(f"a PLC called {request.plc!r} is attached already")
             return
         port = AttachedPlc(
-            request.plc, cycles, self._server, self.publish, lockstep=self._lockstep, cycle_ns=cycle_ns
+            request.plc, cycles, self._server.plcs, self.publish, lockstep=self._lockstep, cycle_ns=cycle_ns
         )
         first = (engine.cycle // cycles + 1) * cycles
         if request.accept(cycle=first, cycle_us=cycle_ns // 1000, lockstep=self._lockstep):
             engine.attach(port)
 
     def _let_go(self) -> None:
-        for name in self._server.departed():
+        for name in self._server.plcs.departed():
             if self._engine.kernel.channel.running:
                 self._on_note(f"PLC {name} has gone in a program: its session has ended, or was silent")
             self._engine.lose(name)
             self._settle_until = self._engine.cycle + 1
         while self._engine.lost:
             plc = self._engine.lost.pop()
+            reason = ""
             if isinstance(plc, AttachedPlc) and self.attached(plc.name):
+                reason = f"has not answered for {plc.patience_s:g} s, up to cycle {self._engine.cycle}"
                 self._on_note(
-                    f"PLC {plc.name} is alive and has not answered for {plc.patience_s:g} s, up to cycle "
-                    f"{self._engine.cycle}: it takes part no more until it attaches anew"
+                    f"PLC {plc.name} is alive and {reason}: it takes part no more until it attaches anew"
                 )
-            self._server.detach(plc.name)
+            self._server.plcs.detach(plc.name, reason)
 
 
-def result_reply(run: Callable[[], Any], request: RunProgram) -> None:
+def result_reply(run: Callable[[], Any], request: RunProgram, on_note: Callable[[str], None]) -> None:
     """Run a client's program and answer with its result, or with what was wrong with it.
 
-    Any other error is the bench's own: the client is told, and it is raised again so that the bench ends with it.
+    Whatever the program does to the bench is the client's answer, and the bench stays up; a fault of the bench itself
+    is told with its traceback. Only when a part of the bench is gone (a process, a bus) it ends with that.
     """
     try:
         result = run()
     except (InputError, NotEmulated) as error:
         request.refuse(str(error))
-        return
-    except Exception as error:
+    except BenchError as error:
         request.refuse(f"the bench ends: {error}")
         raise
-    request.reply(json.dumps(result.to_dict()))
+    except Exception as error:
+        request.refuse(f"the bench failed at this program: {type(error).__name__}: {error}")
+        on_note("".join(traceback.format_exception(error, limit=TRACEBACK_LINES)).rstrip())
+    else:
+        request.reply(json.dumps(result.to_dict()))

@@ -1,6 +1,6 @@
 """One look at a bench: what `hli-bench state` and the key `cnc/state` show."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hli_bench.base.units import mm
@@ -12,9 +12,13 @@ from hli_bench.wire.images import TerminalLayout
 
 
 def look(
-    config: MachineConfig, engine: Engine, terminals: Sequence[TerminalLayout], lateness: Lateness | None
+    config: MachineConfig,
+    engine: Engine,
+    terminals: Sequence[TerminalLayout],
+    lateness: Lateness | None,
+    net: Mapping[str, int],
 ) -> dict[str, Any]:
-    """Return the state of a bench as plain data; positions in mm (degrees)."""
+    """Return the state of a bench as plain data; positions in mm (degrees), `net` what did not count over Zenoh."""
     kernel = engine.kernel
     axes = []
     for axis in config.axes:
@@ -43,6 +47,7 @@ def look(
         "axes": axes,
         "terminals": {terminal.name: terminal.values(images[terminal.name]) for terminal in terminals},
         "plcs": [{"name": plc.name, "period_cycles": plc.period_cycles} for plc in engine.plcs],
+        "net": dict(net),
         "late_cycles": lateness.late if lateness else 0,
         "worst_lateness_us": lateness.worst_ns / 1000 if lateness else 0.0,
     }

@@ -177,7 +177,10 @@ def finish(result: Mapping[str, Any], file: str | None) -> None:
         file=sys.stderr,
     )
     if result.get("late_cycles"):
-        print(f"{result['late_cycles']} of {result['cycles']} cycles were late", file=sys.stderr)
+        print(
+            f"{result['late_cycles']} times of a cycle were missed in {result['cycles']} cycles",
+            file=sys.stderr,
+        )
     for note in result["notes"]:
         print(f"note: {note}", file=sys.stderr)
     if file is not None:

@@ -170,8 +170,8 @@ def _lateness(result: Mapping[str, Any]) -> str:
         for one in bins
     )
     return (
-        f"<section><h2>Real pace</h2><p>{result['late_cycles']} of {result['cycles']} cycles were late by a cycle "
-        f"or more, the worst began {result['worst_lateness_us']:.1f} µs behind its time.</p>"
+        f"<section><h2>Real pace</h2><p>{result['late_cycles']} times of a cycle were missed in "
+        f"{result['cycles']} cycles, the worst of which began {result['worst_lateness_us']:.1f} µs behind its time.</p>"
         f'<p class="soft">Cycles by lateness in µs; bars are logarithmic.</p><ul class="bars">{rows}</ul></section>'
     )
 

@@ -33,8 +33,9 @@ class Stopwatch:
 
 @dataclass(slots=True)
 class Lateness:
-    """How well a paced bench kept its cycle: cycles, late ones (by a cycle or more), worst, how many by powers of two.
+    """How well a paced bench kept its cycle: cycles, how many times of a cycle were missed, worst, by powers of two.
 
+    `late` counts every time of the grid that passed before the cycle due at it began: a gap of nine counts nine.
     `bins[0]` counts cycles late by less than 1 us, `bins[n]` those from 2**(n-1) us to 2**n us.
     """
 
@@ -72,7 +73,7 @@ class Lateness:
 class RealPace:
     """Absolute deadlines, one a cycle, on a grid that stays: a bench that fell behind leaves cycles out of it.
 
-    A cycle is late when it begins a whole cycle or more behind its deadline (decided here). `idle` is called with the
+    A cycle that begins n whole cycles behind its deadline counts n late ones (decided here). `idle` is called with the
     time in ns that is left before a deadline; it must be back before that.
     """
 
@@ -142,5 +143,5 @@ class RealPace:
             part.worst_ns = late
         if late < self._cycle_ns:
             return 0
-        part.late += 1
+        part.late += late // self._cycle_ns
         return late - late % self._cycle_ns

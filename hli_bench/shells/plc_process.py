@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from time import monotonic, sleep
 from typing import Any, Final
@@ -18,7 +19,7 @@ from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.loading import child_command
 from hli_bench.plc import Task, load, period_of
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
-from hli_bench.shells.zenoh_client import HliClient
+from hli_bench.shells.zenoh_client import HliClient, Terms
 from hli_bench.shells.zenoh_session import PLC_LEASE_MS, on_network_thread, payload
 
 RECONNECT_S: Final = 2.0
@@ -26,6 +27,8 @@ RECONNECT_S: Final = 2.0
 LOOK_S: Final = 0.02
 WAITING: Final = 100_000
 """Messages that may wait for a script that dawdles in real pace; with more of them its link to the bench stands."""
+MOST_LINES: Final = 1000
+"""So many lines are told; whoever puts to the bench's keys could make ever new ones."""
 NOT_IN_A_KEY: Final = "/*$?#"
 
 DETACHED: Final = b"detached"
@@ -40,26 +43,28 @@ class _Turn:
     Due are the images from cycle `first` on whose cycle `period` divides; the bench puts others too.
     """
 
-    __slots__ = ("_first", "_pack", "_period", "_put", "_task")
+    __slots__ = ("_first", "_pack", "_period", "_put", "_size", "_task")
 
     def __init__(
-        self, task: Task, packing: CommandsPacking, put: Callable[[bytes], None], first: int, period: int
+        self, task: Task, packing: CommandsPacking, put: Callable[[bytes], None], terms: Terms, size: int
     ) -> None:
+        """`size` is that of the elements in an image."""
+        self._size = size
         self._task = task
         self._pack = packing.pack
         self._put = put
-        self._first = first
-        self._period = period
+        self._first = terms.cycle
+        self._period = terms.period_us // terms.cycle_us
 
-    def due(self, cycle: int) -> bool:
-        """Tell whether the task runs on the image of a cycle."""
+    def due(self, message: bytes) -> bool:
+        """Tell whether the task runs on an image. Raises InputError for one of a wrong size."""
+        cycle, _, _ = unpack_image(message, self._size)
         return cycle >= self._first and cycle % self._period == 0
 
     def answer(self, message: bytes, io: Mapping[str, bytes]) -> None:
-        """Run the task on an image if it is due, and put what it writes."""
-        cycle, dc_ns, elements = unpack_image(message)
-        if self.due(cycle):
-            self._put(self._pack(self._task.step(cycle, dc_ns, elements, io)))
+        """Run the task on an image that is due, and put what it writes."""
+        cycle, dc_ns, elements = unpack_image(message, self._size)
+        self._put(self._pack(self._task.step(cycle, dc_ns, elements, io)))
 
 
 class ScriptClient:
@@ -87,9 +92,10 @@ class ScriptClient:
         self._terminal_keys = f"{client.machine}/io/"
         self._errors_key = f"{client.machine}/hli/errors"
         self._told: set[str] = set()
-        """Reasons for refusals that people know."""
+        """Reasons for refusals, and other lines, that people know."""
         self._packing = CommandsPacking(client.layout)
         self._io: dict[str, bytes] = {}
+        self._sizes = {terminal.name: terminal.size for terminal in client.terminals}
         # One queue that Zenoh fills without Python's lock, so that the script has the thread that Ctrl-C interrupts to
         # itself. A Python queue that a callback fills would take a quarter of the lock-step cycles.
         self._inbox: Any = client.session.declare_subscriber(
@@ -123,18 +129,15 @@ class ScriptClient:
         period_us = self._period_us or period_of(script, self._script)
         task = Task(self._name, script, period_us, client.layout, client.terminals)
         for terminal in client.terminals:
-            self._io[terminal.name] = client.ask_packed(f"io/{terminal.name}")
-        terms = json.loads(
-            client.ask_packed(f"plc/{self._name}/attach", json.dumps({"period_us": period_us}))
-        )
+            self._keep(terminal.name, client.ask_packed(f"io/{terminal.name}"))
+        terms = client.attach(self._name, period_us)
         self._on_line(
-            f"{self._name} is attached to {client.machine} at {client.endpoint}, every {terms['period_us']} us"
+            f"{self._name} is attached to {client.machine} at {client.endpoint}, every {terms.period_us} us"
         )
         publisher = client.session.declare_publisher(f"{self._key}/commands", express=True)
-        period = terms["period_us"] // terms["cycle_us"]
-        turn = _Turn(task, self._packing, publisher.put, terms["cycle"], period)
+        turn = _Turn(task, self._packing, publisher.put, terms, client.layout.size)
         try:
-            return self._in_lock_step(turn) if terms["lockstep"] else self._as_images_come(turn)
+            return self._in_lock_step(turn) if terms.lockstep else self._as_images_come(turn)
         finally:
             publisher.undeclare()
 
@@ -144,7 +147,8 @@ class ScriptClient:
             sample = self._inbox.recv()
             key = str(sample.key_expr)
             if key == self._image_key:
-                turn.answer(payload(sample), self._io)
+                if self._due(turn, image := payload(sample)):
+                    turn.answer(image, self._io)
             elif (ended := self._end(key, sample)) is not None:
                 return ended
 
@@ -160,16 +164,16 @@ class ScriptClient:
             key = str(sample.key_expr)
             if key == self._image_key:
                 image = payload(sample)
-                newest = (image, dict(self._io)) if turn.due(unpack_image(image)[0]) else newest
+                newest = (image, dict(self._io)) if self._due(turn, image) else newest
             elif (ended := self._end(key, sample)) is not None:
                 return ended
 
     def _end(self, key: str, sample: zenoh.Sample) -> bool | None:
         """Keep a terminal; return whether to attach anew when a sample ends this, None for one that does not."""
         if key.startswith(self._terminal_keys):
-            self._io[key.removeprefix(self._terminal_keys)] = payload(sample)
+            self._keep(key.removeprefix(self._terminal_keys), payload(sample))
         elif key == self._errors_key:
-            self._tell(json.loads(payload(sample)))
+            self._tell(payload(sample))
         elif key == self._key:
             news = payload(sample)
             if news == DETACHED:
@@ -178,12 +182,36 @@ class ScriptClient:
                 return self._bench_is_back()
         return None
 
-    def _tell(self, refusal: Mapping[str, Any]) -> None:
+    def _due(self, turn: _Turn, image: bytes) -> bool:
+        """Tell whether the task runs on an image; one of a wrong size comes from somebody else and is left out."""
+        try:
+            return turn.due(image)
+        except InputError as error:
+            self._say(f"left out: hli/image: {error.message}")
+            return False
+
+    def _keep(self, terminal: str, data: bytes) -> None:
+        """Keep a terminal's image, unless somebody else has put something of a wrong size there."""
+        size = self._sizes.get(terminal)
+        if len(data) == size:
+            self._io[terminal] = data
+        elif size is not None:
+            self._say(f"left out: io/{terminal}: {len(data)} bytes, {size} expected")
+
+    def _tell(self, record: bytes) -> None:
         """Tell people why a write of this PLC counts for nothing."""
-        reason = refusal["reason"]
-        if refusal["writer"] == self._name and reason not in self._told:
-            self._told.add(reason)
-            self._on_line(f"refused: {refusal['path']}: {reason}")
+        with suppress(ValueError, RecursionError):
+            match json.loads(record):
+                case {"writer": self._name, "path": str(path), "reason": str(reason)}:
+                    self._say(f"refused: {path}: {reason}", reason)
+                case _:
+                    pass
+
+    def _say(self, line: str, once: str = "") -> None:
+        """Tell people something, once."""
+        if (once or line) not in self._told and len(self._told) < MOST_LINES:
+            self._told.add(once or line)
+            self._on_line(line)
 
     def _bench_is_back(self) -> bool:
         """Tell whether a bench that went away shows up again: then only the link broke, e.g. of a frozen PLC."""

@@ -1,7 +1,9 @@
 """A bench that is up, from outside: elements, programs, state, faults. What the command line uses."""
 
 import json
+import struct
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from typing import Any, Final, Self
 from urllib.parse import quote
@@ -17,8 +19,20 @@ ANSWER_S: Final = 5.0
 """How long the bench may take to answer anything but a program."""
 
 PROGRAM_S: Final = 24 * 3600.0
+LARGEST_IMAGE: Final = 1 << 20
+"""Bytes of a terminal's process image; EtherCAT terminals have up to 1.5 kB."""
 RESET_S: Final = 60.0
 """A reset is answered when all drives are back, at the latest after 2000 cycles."""
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """On which a PLC takes part: the first cycle it answers, the bench's cycle, its period, if it is waited for."""
+
+    cycle: int
+    cycle_us: int
+    period_us: int
+    lockstep: bool
 
 
 class HliClient:
@@ -70,7 +84,8 @@ class HliClient:
 
         Raises InputError when there is nothing of that name.
         """
-        return json.loads(self._one(f"{self._path(name)}?format=json"))
+        selector = f"{self._path(name)}?format=json"
+        return self._read(selector, self._one(selector))
 
     def set(self, name: str, text: str) -> str:
         """Write `text` (`TRUE`, `123`) to an element; return when done, with what the bench remarks on it or "".
@@ -80,8 +95,7 @@ class HliClient:
         path = self._path(name)
         if path.startswith("io/"):
             raise InputError(f"{name} is an input; only HLI elements can be set")
-        answer = self._one(path, text, encoding=TEXT)
-        return str(json.loads(answer)["note"]) if answer else ""
+        return self._note(path, self._one(path, text, encoding=TEXT))
 
     def watch(self, name: str, timeout_s: float | None = None) -> Iterator[Any]:
         """Yield the value of an element, unit or terminal entry now and whenever it changes.
@@ -119,36 +133,48 @@ class HliClient:
         selector = f"cnc/run?name={quote(name)}" if name else "cnc/run"
         replies = self._get(selector, text, PROGRAM_S)
         try:
-            result: dict[str, Any] = json.loads(self._only(selector, replies))
+            return self._object(selector, self._only(selector, replies))
         except KeyboardInterrupt:
             self.reset()
-            self.interrupted = json.loads(self._only(selector, replies))
+            self.interrupted = self._object(selector, self._only(selector, replies))
             raise
-        return result
 
     def reset(self) -> str:
         """CNC reset; return when it has taken effect, with which drives are out of operation all the same or ""."""
-        answer = self._one("cnc/reset", timeout_s=RESET_S)
-        return str(json.loads(answer)["note"]) if answer else ""
+        return self._note("cnc/reset", self._one("cnc/reset", timeout_s=RESET_S))
 
     def state(self) -> dict[str, Any]:
         """Return one look at the bench."""
-        state: dict[str, Any] = json.loads(self._one("cnc/state"))
-        return state
+        return self._object("cnc/state", self._one("cnc/state"))
 
     def cnc_errors(self) -> list[dict[str, Any]]:
         """Return the last error records of the CNC."""
-        errors: list[dict[str, Any]] = json.loads(self._one("cnc/errors"))
+        errors = self._read("cnc/errors", self._one("cnc/errors"))
+        if not isinstance(errors, list):
+            raise self._strange("cnc/errors")
         return errors
 
     def hli_errors(self) -> dict[str, Any]:
         """Return how many writes were refused, and the last of them."""
-        errors: dict[str, Any] = json.loads(self._one("hli/errors"))
-        return errors
+        return self._object("hli/errors", self._one("hli/errors"))
 
     def fault(self, order: Mapping[str, Any]) -> Any:
         """Send a fault order and return the answer. Raises InputError when it is refused."""
-        return json.loads(self._one("bench/fault", json.dumps(order)) or b"null")
+        return self._read("bench/fault", self._one("bench/fault", json.dumps(order)) or b"null")
+
+    def attach(self, plc: str, period_us: int) -> Terms:
+        """Attach a PLC whose liveliness token stands; return on which terms. Raises InputError when it is refused."""
+        selector = f"plc/{plc}/attach"
+        terms = self._object(selector, self._one(selector, json.dumps({"period_us": period_us})))
+        match terms:
+            case {
+                "cycle": int(first),
+                "cycle_us": int(cycle),
+                "period_us": int(period),
+                "lockstep": bool(step),
+            } if 0 < cycle <= period:
+                return Terms(first, cycle, period, step)
+        raise self._strange(selector)
 
     def ask_packed(self, path: str, question: str | None = None) -> bytes:
         """Return the bench's answer to a get of `path` as it came. Raises InputError when it refuses."""
@@ -201,11 +227,39 @@ class HliClient:
         return found
 
     def _terminal_layouts(self) -> list[TerminalLayout]:
-        rows = json.loads(self._one("hli/terminals"))
-        return [
-            TerminalLayout(row["name"], tuple((e, kind, at) for e, kind, at in row["entries"]))
-            for row in rows
-        ]
+        rows = self._read("hli/terminals", self._one("hli/terminals"))
+        try:
+            layouts = [
+                TerminalLayout(row["name"], tuple((e, kind, at) for e, kind, at in row["entries"]))
+                for row in rows
+            ]
+            sizes = [layout.size for layout in layouts]
+        except (KeyError, TypeError, ValueError, struct.error) as error:
+            raise self._strange("hli/terminals") from error
+        if any(not 0 <= size <= LARGEST_IMAGE for size in sizes):
+            raise self._strange("hli/terminals")
+        return layouts
+
+    def _read(self, selector: str, answer: bytes) -> Any:
+        """Return what is in an answer. Raises EnvironmentLacks when it is no JSON: anybody may answer to a key."""
+        try:
+            return json.loads(answer)
+        except (ValueError, RecursionError) as error:
+            raise self._strange(selector) from error
+
+    def _object(self, selector: str, answer: bytes) -> dict[str, Any]:
+        found = self._read(selector, answer)
+        if not isinstance(found, dict):
+            raise self._strange(selector)
+        return found
+
+    def _note(self, selector: str, answer: bytes) -> str:
+        return str(self._object(selector, answer).get("note", "")) if answer else ""
+
+    def _strange(self, selector: str) -> EnvironmentLacks:
+        return EnvironmentLacks(
+            f"{self.endpoint} answers {selector} with something that no bench of this version says"
+        )
 
     @staticmethod
     def _changed(changes: SimpleQueue[tuple[str, Any]], timeout_s: float | None) -> bool:

@@ -1,9 +1,11 @@
 """What clients ask of the bench over Zenoh, each to be answered once."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from io import StringIO
+from typing import Any, Final
 
 import zenoh
 
@@ -11,10 +13,15 @@ from hli_bench.base.errors import InputError
 from hli_bench.protocols.hli.access import MemberWrite, Refusal
 from hli_bench.shells.zenoh_session import JSON, PACKED, TEXT, payload
 
+LONGEST_PROGRAM: Final = 16 << 20
+"""Bytes of an NC program that a client may send (decided here)."""
+LONGEST_QUESTION: Final = 4096
+"""Bytes of a JSON object that a client may send (decided here)."""
+
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Request:
-    """Something asked with `key`. A put (`query` None) gets no answer."""
+    """Something asked with `key`. A put (`query` None) gets no answer, nor does who has gone meanwhile."""
 
     key: str
     report: Callable[[list[Refusal]], None]
@@ -23,7 +30,7 @@ class Request:
     def reply(self, answer: bytes | str = b"") -> None:
         """Answer that it has been done; a str is sent as JSON."""
         if self.query is not None:
-            with self.query as query:
+            with suppress(zenoh.ZError), self.query as query:
                 query.reply(self.key, answer, encoding=JSON if isinstance(answer, str) else PACKED)
 
     def refuse(self, reason: str) -> None:
@@ -35,7 +42,7 @@ class Request:
     def deny(self, reason: str) -> None:
         """Answer that it was not done and why."""
         if self.query is not None:
-            with self.query as query:
+            with suppress(zenoh.ZError), self.query as query:
                 query.reply_err(reason, encoding=TEXT)
 
 
@@ -73,10 +80,18 @@ class Attach(Request):
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class RunProgram(Request):
-    """An NC program to run, under the name it was given; the reply is the result as JSON."""
+    """An NC program to run, under the name it was given; the reply is the result as JSON.
 
-    text: str
+    It is text, never a path: who wants a file to run reads it.
+    """
+
+    packed: bytes
     name: str
+
+    def lines(self) -> Iterator[str]:
+        """Yield the lines of the text, as those of a file are read."""
+        text = self.packed.decode("utf-8-sig", "replace")
+        return (line.rstrip("\n") for line in StringIO(text, newline=None))
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -98,8 +113,11 @@ class FaultOrder(Request):
 
 def json_object(query: zenoh.Query) -> dict[str, Any]:
     """Return the JSON object in a query's payload. Raises InputError when it is something else."""
+    packed = payload(query)
+    if len(packed) > LONGEST_QUESTION:
+        raise InputError(f"{len(packed)} bytes: a JSON object of at most {LONGEST_QUESTION} expected")
     try:
-        found = json.loads(payload(query))
+        found = json.loads(packed)
     except (ValueError, RecursionError) as error:
         raise InputError(f"no JSON: {error}") from error
     if not isinstance(found, dict):

@@ -389,22 +389,37 @@ def test_a_worker_that_is_stuck_is_named_and_ended() -> None:
 
 def test_errors_of_the_bench_end_it_and_those_of_a_program_do_not() -> None:
     told: list[str] = []
-    request = RunProgram(key="demo/cnc/run", report=lambda of: told.append(of[0].reason), text="", name="")
+    lines: list[str] = []
+    request = RunProgram(key="demo/cnc/run", report=lambda of: told.append(of[0].reason), packed=b"", name="")
 
     def failing(error: Exception) -> Any:
         raise error
 
-    result_reply(lambda: failing(InputError("no word")), request)
-    result_reply(lambda: failing(NotEmulated("G33")), request)
+    result_reply(lambda: failing(InputError("no word")), request, lines.append)
+    result_reply(lambda: failing(NotEmulated("G33")), request, lines.append)
     for error in (EnvironmentLacks("a worker has ended"), BenchError("broken")):
         with pytest.raises(type(error)):
-            result_reply(partial(failing, error), request)
+            result_reply(partial(failing, error), request, lines.append)
     assert told == [
         "no word",
         "NotEmulated: G33",
         "the bench ends: a worker has ended",
         "the bench ends: broken",
     ]
+    assert lines == []
+
+
+def test_what_a_program_does_to_the_bench_is_its_answer_and_told() -> None:
+    told: list[str] = []
+    lines: list[str] = []
+    request = RunProgram(key="demo/cnc/run", report=lambda of: told.append(of[0].reason), packed=b"", name="")
+
+    def failing() -> Any:
+        raise RecursionError("too deep")
+
+    result_reply(failing, request, lines.append)
+    assert told == ["the bench failed at this program: RecursionError: too deep"]
+    assert "in failing" in lines[0]
 
 
 def test_a_deadline_passes() -> None:

@@ -13,6 +13,11 @@ from hli_bench.wire.hli import Commands, Write
 IMAGE_HEADER: Final = Struct("<Qq")
 """Cycle and DC time in ns in front of the elements."""
 
+REPEATED: Final = 4
+"""How often a PLC may write each element of the layout in one message (decided here)."""
+LONGEST_TEXT: Final = 64
+"""Characters of a value as text; the longest that fits a type has 20 digits (decided here)."""
+
 _CYCLE: Final = Struct("<Q")
 _WORDS: Final = {"true": True, "false": False}
 
@@ -22,8 +27,13 @@ def pack_image(cycle: int, dc_ns: Ns, image: bytes) -> bytes:
     return IMAGE_HEADER.pack(cycle, dc_ns) + image
 
 
-def unpack_image(message: bytes) -> tuple[int, Ns, bytes]:
-    """Return cycle, DC ns and the element bytes of the message `hli/image`."""
+def unpack_image(message: bytes, size: int) -> tuple[int, Ns, bytes]:
+    """Return cycle, DC ns and the `size` element bytes of the message `hli/image`.
+
+    Raises InputError for one of another size: anybody may put to the key.
+    """
+    if len(message) != IMAGE_HEADER.size + size:
+        raise InputError(f"an image of {len(message)} bytes, {IMAGE_HEADER.size + size} expected")
     cycle, dc_ns = IMAGE_HEADER.unpack_from(message)
     return cycle, Ns(dc_ns), message[IMAGE_HEADER.size :]
 
@@ -31,12 +41,13 @@ def unpack_image(message: bytes) -> tuple[int, Ns, bytes]:
 class CommandsPacking:
     """Packs and unpacks `plc/<name>/commands`: u64 cycle answered, then u16 element id, value and so on."""
 
-    __slots__ = ("_entries", "_layout")
+    __slots__ = ("_entries", "_layout", "_longest")
 
     def __init__(self, layout: Layout) -> None:
         self._layout = layout
         structs = {code: Struct("<H" + code) for code in {element.code for element in layout.elements}}
         self._entries = [structs[element.code] for element in layout.elements]
+        self._longest = _CYCLE.size + REPEATED * sum(entry.size for entry in self._entries)
 
     def pack(self, commands: Commands) -> bytes:
         """Return the message. Raises InputError for a path or value the layout does not have."""
@@ -64,6 +75,10 @@ class CommandsPacking:
         cycle, at = self.cycle(message), _CYCLE.size
         if len(message) == at:
             return Commands(plc, cycle, ())
+        if len(message) > self._longest:
+            raise InputError(
+                f"{len(message)} bytes: commands have at most {self._longest}, each element {REPEATED} times"
+            )
         writes: list[Write] = []
         while at < len(message):
             number = int.from_bytes(message[at : at + 2], "little")
@@ -104,6 +119,8 @@ def decoded(element: Element, payload: bytes, *, is_text: bool = False) -> Value
 
 
 def _from_text(element: Element, payload: bytes) -> Value:
+    if len(payload) > LONGEST_TEXT:
+        raise InputError(f"{len(payload)} bytes of text: a {element.type} takes at most {LONGEST_TEXT}")
     text = payload.decode("utf-8", "replace").strip()
     if text.lower() in _WORDS:
         return _WORDS[text.lower()]

@@ -60,7 +60,7 @@ def test_a_command_that_does_not_fit_is_not_packed() -> None:
 def test_the_image_message_carries_cycle_and_dc_time_in_front() -> None:
     message = pack_image(5, -1, b"abc")
     assert message == struct.pack("<Qq", 5, -1) + b"abc"
-    assert unpack_image(message) == (5, -1, b"abc")
+    assert unpack_image(message, 3) == (5, -1, b"abc")
 
 
 def test_a_value_as_text() -> None:

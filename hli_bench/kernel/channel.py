@@ -25,14 +25,15 @@ from hli_bench.kernel.blocks import (
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.decoder import Decoder
 from hli_bench.kernel.drive_manager.objects import ObjectChannel
+from hli_bench.kernel.drive_manager.probe_telegrams import DRIVE_INPUTS, ProbeTelegrams
 from hli_bench.kernel.hindrances import unserved
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.position_controller import measurement
-from hli_bench.kernel.position_controller.measuring_rules import Probe, default_probe
+from hli_bench.kernel.position_controller.measuring_rules import Probe, default_probe, take_settings
 from hli_bench.kernel.records import CncError, MeasuredValue, MessageText, Unmeasured
 from hli_bench.kernel.watches import cycle_reached, jog_stopped, path_done, segment_reached
 from hli_bench.laws.rows import FOLLOW, SEGMENTS
-from hli_bench.manual.axis.words import Edge, ProbingSignal
+from hli_bench.manual.axis.words import ProbingSignal
 from hli_bench.manual.errors import path_interpolator as errors
 from hli_bench.manual.errors import position_controller as position_errors
 
@@ -57,6 +58,7 @@ class Channel:
     def __init__(self, core: Core, objects: ObjectChannel, monitoring: Monitoring) -> None:
         self._core = core
         self._objects = objects
+        self._telegrams = ProbeTelegrams(objects)
         self._monitoring = monitoring
         self._decoder: Decoder | None = None
         self._items: Items | None = None
@@ -256,7 +258,16 @@ class Channel:
                 self._end(completed=True)
 
     def _may_measure(self, block: MeasuringRun) -> bool:
-        return measurement.may_begin(self._core, block, self._probes)
+        """Tell whether drives and sources are ready; they can be in a later cycle."""
+        carried = [
+            self._telegrams.carry(self._core.axis(axis), self._probes[axis].input)
+            for axis in block.axes
+            if self._probes[axis].signal is ProbingSignal.DRIVE and self._probes[axis].input in DRIVE_INPUTS
+        ]
+        for axis in self._telegrams.take_refused():
+            sheet = position_errors.DRIVE_COMMAND_NOT_SUPPORTED
+            self._core.report(sheet, block.source, axis.number, axis=axis.index)
+        return all(carried) and measurement.may_begin(self._core, block, self._probes)
 
     def _measuring(self, block: MeasuringRun) -> Activity | None:
         for axis in block.axes:
@@ -297,29 +308,9 @@ class Channel:
         return True
 
     def _set_measuring(self, settings: MeasureSettings) -> None:
-        core = self._core
         if settings.error_no_signal is not None:
             self._error_no_signal = settings.error_no_signal
-        axes = [axis.index for axis in core.setup.axes] if settings.axis is None else [settings.axis]
-        for axis in axes:
-            if settings.axis is not None and not core.axis(axis).params.kenngr.messachse:
-                number = core.axis(axis).number
-                core.report(errors.MEAS_NOT_A_MEASUREMENT_AXIS, settings.source, number, axis=axis)
-                return
-            probe = self._probes[axis]
-            if settings.reset:
-                self._probes[axis] = default_probe(core, axis)
-                continue
-            other_input = settings.input is not None and settings.input != probe.input
-            if other_input and ProbingSignal.DRIVE in (probe.signal, settings.signal):
-                number = core.axis(axis).number
-                core.report(position_errors.INPUT_NOT_CHANGEABLE, settings.source, number, axis=axis)
-                return
-            self._probes[axis] = Probe(
-                ProbingSignal(settings.signal) if settings.signal else probe.signal,
-                settings.input if settings.input is not None else probe.input,
-                Edge(settings.edge) if settings.edge else probe.edge,
-            )
+        take_settings(self._core, self._probes, settings)
 
     def _hand_out_texts(self) -> None:
         """Emit the SYN texts whose place in the motion has been reached; watch for the next."""

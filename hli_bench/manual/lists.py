@@ -174,6 +174,14 @@ def check_values(cls: type[Any], values: Mapping[str, Value]) -> list[tuple[str,
     return found
 
 
+INPUT_PATHS: Final = (
+    "kenngr.measure.input",
+    "antr.probing_input_nbr",
+    "antr.canopen.probing_input_number",
+)
+"""Where a list names the probing input; the first that is not 0 counts."""
+
+
 def _acts(entry: Entry, path: str) -> bool:
     """Tell whether a parameter changes anything: the first gear step and hardware set are always the engaged ones."""
     engaged = not path.startswith(ONE_OF_SEVERAL) or path.partition("]")[0].endswith("[0")
@@ -185,14 +193,15 @@ def _axis_rules(values: Mapping[str, Value]) -> Iterator[tuple[str, Finding]]:
     if values.get("kenngr.ref_ohne_nocken") is True and values.get("kenngr.ref_ohne_rev") is not True:
         message = "kenngr.ref_ohne_nocken: 1 needs kenngr.ref_ohne_rev 1 (P-AXIS-00156, P-AXIS-00157)"
         yield "kenngr.ref_ohne_nocken", Finding(Severity.WARNING, message)
-    number = values.get("kenngr.measure.input", 0)
     kenngr = build(AxisParams, values).kenngr
     inputs = permitted_inputs(effective_signal(kenngr), kenngr.antr_typ)
-    if number and inputs is not None and number not in inputs:
+    path = next((path for path in INPUT_PATHS if values.get(path)), "")
+    if path and inputs is not None and values[path] not in inputs:
+        permitted = f"{inputs.start}..{inputs.stop - 1} of this source"
         message = (
-            f"kenngr.measure.input: {number} is not one of {inputs.start}..{inputs.stop - 1} of this source"
+            f"{path}: {values[path]} is not one of {permitted}, corrected to 1 (P-ERR-110587, P-AXIS-00517)"
         )
-        yield "kenngr.measure.input", Finding(Severity.WARNING, f"{message} (P-AXIS-00517)")
+        yield path, Finding(Severity.WARNING, message)
 
 
 def _beyond(

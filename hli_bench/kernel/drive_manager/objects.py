@@ -26,12 +26,18 @@ class Order:
 class ObjectChannel:
     """The service channel to all nodes."""
 
-    __slots__ = ("_clients", "_orders", "_running")
+    __slots__ = ("_clients", "_orders", "_running", "probing_inputs")
 
     def __init__(self, nodes: Iterable[NodeId]) -> None:
         self._clients = {node: SdoClient(node) for node in nodes}
         self._orders: dict[NodeId, deque[Order]] = {node: deque() for node in self._clients}
         self._running: dict[NodeId, Order] = {}
+        self.probing_inputs: dict[NodeId, int] = {}
+        """Probing input whose latches the telegrams of a node carry since they were configured; 0: not known."""
+
+    def waits(self, node: NodeId) -> bool:
+        """Tell whether orders for a node are waiting or on their way."""
+        return node in self._running or bool(self._orders[node])
 
     def write(self, node: NodeId, order: Order) -> None:
         """Queue a download."""
@@ -67,7 +73,9 @@ class ObjectChannel:
 
     def clear(self) -> None:
         """Forget what waits (a CNC reset); what is on its way ends by itself, and nobody hears how."""
-        for orders in self._orders.values():
+        for node, orders in self._orders.items():
+            if orders:
+                self.probing_inputs[node] = 0
             orders.clear()
         for node, order in self._running.items():
             self._running[node] = replace(order, done=_nobody)

@@ -12,7 +12,7 @@ from hli_bench.base.errors import BenchError
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.drive_manager.objects import ObjectChannel, Order
-from hli_bench.kernel.drive_manager.telegram import second_input_telegrams
+from hli_bench.kernel.drive_manager.probe_telegrams import FIRST_INPUT, SECOND_INPUT, writes
 from hli_bench.kernel.sequence import END, Level, Phase, Table, Then, Until
 from hli_bench.kernel.watches import statusword
 from hli_bench.laws.rows import FOLLOW, HOLD, PATH
@@ -27,7 +27,6 @@ from hli_bench.protocols.canopen.cia402 import (
 )
 from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame
 
-SECOND_INPUT: Final = 2
 HEARTBEAT_MS: Final = 1000
 """Producer heartbeat that the CNC asks of its drives (decided here)."""
 
@@ -61,9 +60,12 @@ def _configure(drive: Drive) -> None:
     drive.order(*PRODUCER_HEARTBEAT, struct.pack("<H", HEARTBEAT_MS))
     drive.order(*MODE_OF_OPERATION, struct.pack("<b", CYCLIC_SYNCHRONOUS_POSITION))
     axis = drive.core.axis(drive.axis)
-    if effective_input(axis.params) == SECOND_INPUT:
-        for index, subindex, data in second_input_telegrams(axis.node):
+    probing_input = SECOND_INPUT if effective_input(axis.params) == SECOND_INPUT else FIRST_INPUT
+    carried = drive.channel.probing_inputs.get(axis.node, FIRST_INPUT)
+    if {probing_input, carried} != {FIRST_INPUT}:
+        for index, subindex, data in writes(axis.node, probing_input):
             drive.order(index, subindex, data)
+    drive.channel.probing_inputs[axis.node] = probing_input
 
 
 def _configured(drive: Drive) -> Until:

@@ -1,34 +1,15 @@
 """The cyclic telegrams of a drive as the CNC sends and takes them."""
 
 from collections.abc import Iterable, Sequence
-from struct import Struct
 from typing import Final
 
 from hli_bench.base.ids import NodeId
 from hli_bench.laws.rows import Rows
-from hli_bench.protocols.canopen.pdo import INVALID, MAPPING_OFFSET, NO_RTR, TPDO_COMMUNICATION
-from hli_bench.protocols.canopen.telegram import RPDOS, TPDOS, Telegram, changed
+from hli_bench.protocols.canopen.telegram import RPDOS, TPDOS, Telegram
 from hli_bench.wire.can import CanFrame
 
-_LONG: Final = Struct("<I")
 _HERE: Final = {"position": "received"}
 """Numbers that have another name in the CNC's rows: what came is not yet the actual position."""
-
-
-def second_input_telegrams(node: NodeId) -> list[tuple[int, int, bytes]]:
-    """Return the SDO writes that make the actual value telegrams carry the latches of the second probing input."""
-    writes: list[tuple[int, int, bytes]] = []
-    for place, telegram in changed(1):
-        cob_id = telegram.base + node | NO_RTR
-        communication = TPDO_COMMUNICATION[place]
-        mapping = communication + MAPPING_OFFSET
-        entries = telegram.mapping
-        writes.append((communication, 1, _LONG.pack(cob_id | INVALID)))
-        writes.append((mapping, 0, bytes((0,))))
-        writes += [(mapping, number, _LONG.pack(entry)) for number, entry in enumerate(entries, 1)]
-        writes.append((mapping, 0, bytes((len(entries),))))
-        writes.append((communication, 1, _LONG.pack(cob_id)))
-    return writes
 
 
 class CommandTelegrams:

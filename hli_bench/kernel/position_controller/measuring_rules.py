@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from hli_bench.base.ids import AxisIndex
-from hli_bench.kernel.blocks import MeasuringRun
+from hli_bench.kernel.blocks import MeasureSettings, MeasuringRun
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.records import CncError
+from hli_bench.kernel.setup import AxisSetup
 from hli_bench.manual.axis.fallbacks import (
     effective_edge,
     effective_input,
@@ -18,8 +19,11 @@ from hli_bench.manual.axis.fallbacks import (
     fixed_stop_start_per_mille,
     has_criterion,
     permitted_inputs,
+    resolved_signal,
 )
 from hli_bench.manual.axis.words import Edge, ProbingSignal
+from hli_bench.manual.drive_types import DriveType
+from hli_bench.manual.errors import ErrorSheet
 from hli_bench.manual.errors import path_interpolator as errors
 from hli_bench.manual.errors import path_preparation as preparation_errors
 from hli_bench.manual.errors import position_controller as position_errors
@@ -46,6 +50,44 @@ def default_probe(core: Core, axis: AxisIndex) -> Probe:
     """Return how an axis is probed by its list."""
     params = core.axis(axis).params
     return Probe(effective_signal(params.kenngr), effective_input(params), effective_edge(params.kenngr))
+
+
+def take_settings(core: Core, probes: dict[AxisIndex, Probe], settings: MeasureSettings) -> None:
+    """Change how axes are probed as #MEAS says, #MEAS DEFAULT back to their lists; report what is not possible."""
+    if settings.axis is None:
+        if settings.reset:
+            probes.update((axis.index, default_probe(core, axis.index)) for axis in core.setup.axes)
+        return
+    axis = core.axis(settings.axis)
+    before = default_probe(core, axis.index) if settings.reset else probes[axis.index]
+    signal = ProbingSignal(settings.signal) if settings.signal else before.signal
+    after = Probe(
+        resolved_signal(signal, axis.params.kenngr.antr_typ),
+        before.input if settings.input is None else settings.input,
+        Edge(settings.edge) if settings.edge else before.edge,
+    )
+    refusal = _change_refused(axis, before, after)
+    if refusal is None:
+        probes[axis.index] = after
+        return
+    values = (axis.number, after.input) if refusal is errors.MEAS_INPUT_INVALID else (axis.number,)
+    core.report(refusal, settings.source, *values, axis=axis.index)
+
+
+def _change_refused(axis: AxisSetup, before: Probe, after: Probe) -> ErrorSheet | None:
+    """Return why an axis cannot be probed in another way, None when it can."""
+    if not axis.params.kenngr.messachse:
+        return errors.MEAS_NOT_A_MEASUREMENT_AXIS
+    drive_type = axis.params.kenngr.antr_typ
+    inputs = permitted_inputs(after.signal, drive_type)
+    if inputs is not None and after.input not in inputs:
+        return errors.MEAS_INPUT_INVALID
+    if after.signal is ProbingSignal.DRIVE and drive_type is DriveType.SERCOS:
+        if after.input != before.input:
+            return position_errors.INPUT_NOT_CHANGEABLE
+        if after.edge is not before.edge:
+            return position_errors.EDGE_NOT_CHANGEABLE
+    return None
 
 
 def to_fixed_stop(block: MeasuringRun, probes: Mapping[AxisIndex, Probe]) -> bool:

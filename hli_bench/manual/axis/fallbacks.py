@@ -47,9 +47,7 @@ def effective_signal(kenngr: Kenngr) -> ProbingSignal:
     signal = kenngr.measure.signal
     if signal is ProbingSignal.UNSET:
         signal = _old_signal(kenngr)
-    if signal is not ProbingSignal.DRIVE_TYPE_DEFAULT:
-        return signal
-    return ProbingSignal.DRIVE if kenngr.antr_typ in LATCHING else ProbingSignal.PLC
+    return resolved_signal(signal, kenngr.antr_typ)
 
 
 def _old_signal(kenngr: Kenngr) -> ProbingSignal:
@@ -70,8 +68,22 @@ def effective_edge(kenngr: Kenngr) -> Edge:
     return Edge.NEG if kenngr.mess_neg_flanke else Edge.POS
 
 
+def resolved_signal(signal: ProbingSignal, drive_type: DriveType) -> ProbingSignal:
+    """Return a source by name; DRIVE_TYPE_DEFAULT is DRIVE for drives that latch, PLC for the others."""
+    if signal is not ProbingSignal.DRIVE_TYPE_DEFAULT:
+        return signal
+    return ProbingSignal.DRIVE if drive_type in LATCHING else ProbingSignal.PLC
+
+
 def effective_input(axis: AxisParams) -> int:
-    """Return the probing input: P-AXIS-00517, else 00430, else (CANopen) 00295, else 1."""
+    """Return the probing input; one that the source has not is corrected to 1, with warning 110587."""
+    wanted = _listed_input(axis)
+    permitted = permitted_inputs(effective_signal(axis.kenngr), axis.kenngr.antr_typ)
+    return wanted if permitted is None or wanted in permitted else 1
+
+
+def _listed_input(axis: AxisParams) -> int:
+    """Return P-AXIS-00517, else 00430, else (CANopen) 00295, else 1."""
     if axis.kenngr.measure.input:
         return axis.kenngr.measure.input
     if axis.antr.probing_input_nbr:

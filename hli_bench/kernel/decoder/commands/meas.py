@@ -1,6 +1,7 @@
 """#MEAS MODE, #MEAS [...], #MEAS DEFAULT: type and probing parameters (measurement manual, chapter 3)."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
@@ -12,7 +13,10 @@ from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.keywords import Keyword, Kind, axis_of, keywords
 from hli_bench.kernel.decoder.text import Scanner
 from hli_bench.kernel.decoder.variables import Variables
+from hli_bench.manual.axis.kenngr import Measure
 from hli_bench.manual.errors import decoder as errors
+from hli_bench.manual.errors import path_interpolator as path_errors
+from hli_bench.manual.sheet import entries
 
 if TYPE_CHECKING:
     from hli_bench.base.ids import AxisIndex
@@ -38,27 +42,21 @@ _NOT_BUILT: Final = {
     "G107": "edge banding",
     "G108": "edge banding",
 }
-SIGNALS: Final = (
-    "DRIVE_TYPE_DEFAULT",
-    "PLC",
-    "FIXED_STOP",
-    "DRIVE",
-    "PLC_EXT_LATCH_CONTROL",
-    "PLC_FIRST_EVENT",
-    "PLC_TIMESTAMP",
-    "EXT_PROBE_WITH_DRIVE",
-)
+_SIGNAL: Final = next(one.sheet for one in entries(Measure) if one.path == "signal")
+SIGNALS: Final = tuple(str(word) for word in _SIGNAL.choices if word)
 """Values of P-AXIS-00516 that SIGNAL= takes."""
 
 MAX_TYPE: Final = 8
+LARGEST_INPUT: Final = 255
 
 
 @dataclass(slots=True)
 class _Group:
-    """Keywords that belong to one axis."""
+    """Axes that are named one after the other, and the keywords behind them."""
 
-    axis: DecoderAxis | None = None
+    axes: list[DecoderAxis] = field(default_factory=list)
     seen: dict[str, Keyword] = field(default_factory=dict)
+    at: int = 0
 
 
 def run(context: Context, memory: Variables, scanner: Scanner) -> Steps:
@@ -121,18 +119,29 @@ def _settings(context: Context, memory: Variables, scanner: Scanner) -> Steps:
         if keyword.name in _NOT_BUILT:
             raise scanner.not_emulated(f"#MEAS {keyword.name}: {_NOT_BUILT[keyword.name]}", keyword.at)
         if keyword.name in ("AX", "AXNR"):
-            groups.append(_Group(axis_of(scanner, context, keyword)))
+            if groups[-1].seen or not groups[-1].axes:
+                groups.append(_Group(at=keyword.at))
+            groups[-1].axes.append(axis_of(scanner, context, keyword))
         elif keyword.name in groups[-1].seen:
             raise CncStop(errors.MEAS_KEYWORD_TWICE, scanner.block.source)
         else:
             groups[-1].seen[keyword.name] = keyword
-    yield from _general(context, scanner, groups)
-    for group in groups:
-        if group.seen:
-            yield _block(scanner, group)
+    general = list(_general(context, scanner, groups))
+    for group in groups[1:]:
+        if not group.seen:
+            raise scanner.error(f"expected SIGNAL, EDGE or INPUT for axis {group.axes[0].name}", group.at)
+    if not groups[0].axes and groups[0].seen:
+        first = next(iter(groups[0].seen.values()))
+        raise scanner.error(f"expected AX= or AXNR= before {first.name}", first.at)
+    if len(groups) == 1 and not general:
+        raise scanner.error(f"expected one of {', '.join(_KEYS)} in #MEAS [...]")
+    yield from general
+    for group in groups[1:]:
+        for axis in group.axes:
+            yield _block(scanner, group, axis)
 
 
-def _general(context: Context, scanner: Scanner, groups: list[_Group]) -> Steps:
+def _general(context: Context, scanner: Scanner, groups: list[_Group]) -> Iterator[MeasureSettings]:
     """Take TYPE and ERR_NO_SIGNAL, which belong to no axis.
 
     TYPE without ERR_NO_SIGNAL asks for the error (the keyword's default, decided here).
@@ -156,20 +165,41 @@ def _general(context: Context, scanner: Scanner, groups: list[_Group]) -> Steps:
         )
 
 
-def _block(scanner: Scanner, group: _Group) -> MeasureSettings:
+def _block(scanner: Scanner, group: _Group, axis: DecoderAxis) -> MeasureSettings:
     seen = group.seen
-    if group.axis is None:
-        first = next(iter(seen.values()))
-        raise scanner.error(f"expected AX= or AXNR= before {first.name}", first.at)
     return MeasureSettings(
         source=scanner.block.source,
-        axis=group.axis.index,
-        signal=_one_of(scanner, seen.get("SIGNAL"), SIGNALS),
+        axis=axis.index,
+        signal=_signal(scanner, seen.get("SIGNAL")),
         edge=_one_of(scanner, seen.get("EDGE"), ("POS", "NEG")),
-        input=_whole(scanner, seen.get("INPUT"), 1, 255),
+        input=_input(scanner, seen.get("INPUT"), axis),
         error_no_signal=None,
         reset=False,
     )
+
+
+def _signal(scanner: Scanner, keyword: Keyword | None) -> str | None:
+    word = _one_of(scanner, keyword, SIGNALS)
+    if keyword is not None and word in _SIGNAL.not_emulated:
+        raise scanner.not_emulated(f"SIGNAL={word}: this probing source is not built", keyword.at)
+    return word
+
+
+def _input(scanner: Scanner, keyword: Keyword | None, axis: DecoderAxis) -> int | None:
+    """Take a probing input; which of them a source has the position controller knows."""
+    if keyword is None:
+        return None
+    if keyword.value != int(keyword.value):
+        raise scanner.error(f"INPUT={keyword.value:g}: expected a whole number", keyword.at)
+    if not 1 <= keyword.value <= LARGEST_INPUT:
+        raise CncStop(
+            path_errors.MEAS_INPUT_INVALID,
+            scanner.block.source,
+            axis.number,
+            int(keyword.value),
+            axis=axis.name,
+        )
+    return int(keyword.value)
 
 
 def _one_of(scanner: Scanner, keyword: Keyword | None, allowed: tuple[str, ...]) -> str | None:

@@ -15,6 +15,7 @@ from hli_bench.manual.axis.fallbacks import effective_signal, permitted_inputs
 from hli_bench.manual.catalogue import INDEX, PLACEHOLDER, Catalogue, catalogue, convert, named
 from hli_bench.manual.channel import ChannelParams
 from hli_bench.manual.drive_types import AxisMode
+from hli_bench.manual.measuring_methods import corrections
 from hli_bench.manual.sheet import Effect, Entry, Value
 from hli_bench.manual.trees import build, converted, flatten, refusals, value_at, with_value
 
@@ -193,6 +194,8 @@ def _axis_rules(values: Mapping[str, Value]) -> Iterator[tuple[str, Finding]]:
     if values.get("kenngr.ref_ohne_nocken") is True and values.get("kenngr.ref_ohne_rev") is not True:
         message = "kenngr.ref_ohne_nocken: 1 needs kenngr.ref_ohne_rev 1 (P-AXIS-00156, P-AXIS-00157)"
         yield "kenngr.ref_ohne_nocken", Finding(Severity.WARNING, message)
+    for path, message in corrections(values):
+        yield path, Finding(Severity.WARNING, message)
     kenngr = build(AxisParams, values).kenngr
     inputs = permitted_inputs(effective_signal(kenngr), kenngr.antr_typ)
     path = next((path for path in INPUT_PATHS if values.get(path)), "")

@@ -10,6 +10,7 @@ from hli_bench.manual.axis.fixed_stop import PRESETS, DriveIdent
 from hli_bench.manual.axis.words import HomingType
 from hli_bench.manual.catalogue import INDEX, PLACEHOLDER, Catalogue, catalogue, convert
 from hli_bench.manual.drive_types import DriveType
+from hli_bench.manual.measuring_methods import unbuilt
 from hli_bench.manual.sheet import ARRAY, Array, Effect, Entry, Value
 
 P = TypeVar("P")
@@ -128,6 +129,7 @@ def refusals(cls: type[Any], values: Mapping[str, Value]) -> list[tuple[str, str
     ]
     for path, entry, beside in _defaults(known, values):
         found += [(beside, f"{text}, its default") for text in _refused(entry, path, entry.default)]
+    found += unbuilt(values)
     return found
 
 

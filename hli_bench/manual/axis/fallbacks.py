@@ -10,6 +10,7 @@ from hli_bench.manual.axis.getriebe import Getriebe
 from hli_bench.manual.axis.kenngr import Kenngr
 from hli_bench.manual.axis.words import Edge, ProbingSignal
 from hli_bench.manual.drive_types import DriveType
+from hli_bench.manual.measuring_methods import chosen
 
 LATCHING = frozenset(
     {
@@ -41,24 +42,12 @@ class TwoStepSlope:
 def effective_signal(kenngr: Kenngr) -> ProbingSignal:
     """Return the source of the probing signal: P-AXIS-00516, else the old parameters, else by drive type.
 
-    Decided here: with several old parameters set the order is 00330, 00269 or 00116, 00257 or 00115;
-    DRIVE_TYPE_DEFAULT is DRIVE for drives that latch, PLC for the others.
+    Decided here: DRIVE_TYPE_DEFAULT is DRIVE for drives that latch, PLC for the others.
     """
     signal = kenngr.measure.signal
     if signal is ProbingSignal.UNSET:
-        signal = _old_signal(kenngr)
+        signal = chosen(kenngr)
     return resolved_signal(signal, kenngr.antr_typ)
-
-
-def _old_signal(kenngr: Kenngr) -> ProbingSignal:
-    """Return what the parameters before V2.11.2019.15 select."""
-    if kenngr.meas_signal_fixed_stop:
-        return ProbingSignal.FIXED_STOP
-    if kenngr.meas_signal_drive or kenngr.mess_signal_sercos:
-        return ProbingSignal.DRIVE
-    if kenngr.probing_signal_via_plc or kenngr.mess_signal_achs_steuer:
-        return ProbingSignal.PLC
-    return ProbingSignal.DRIVE_TYPE_DEFAULT
 
 
 def effective_edge(kenngr: Kenngr) -> Edge:

@@ -640,7 +640,7 @@ class Kenngr:
             replaced_by="P-AXIS-00516",
             doc="Old: the probe is wired to a hardware interface of the kernel.",
             source="measurement manual 8.2.4 (old parameters)",
-            effect=Effect.ACCEPTED,
+            effect=Effect.EMULATED,
         ),
     )
     messachse: bool = param(

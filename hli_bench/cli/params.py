@@ -13,9 +13,8 @@ from hli_bench.cli.options import Commands
 from hli_bench.manual.axis import AxisParams
 from hli_bench.manual.catalogue import Catalogue, catalogue
 from hli_bench.manual.channel import ChannelParams
-from hli_bench.manual.drive_types import DriveType
 from hli_bench.manual.lists import Severity, parse_list, refusals
-from hli_bench.manual.sheet import Effect, Entry
+from hli_bench.manual.sheet import Effect, Entry, Sheet
 
 KINDS: Final[Mapping[str, type[Any]]] = {"axis": AxisParams, "channel": ChannelParams}
 EFFECTS: Final[Mapping[Effect, str]] = {
@@ -98,7 +97,7 @@ def sheet_rows(kind: str, entry: Entry) -> Iterator[tuple[str, str]]:
         "default": _shown(entry.default),
         "unit": _units(entry) if kind == "axis" else sheet.units.t,
         "axis types": ", ".join(AXIS_TYPES[letter] for letter in sheet.axis_types) if kind == "axis" else "",
-        "drive types": _drive_types(sheet.drive_types) if kind == "axis" else "",
+        "drive types": _drive_types(sheet) if kind == "axis" else "",
         "effect": EFFECTS[sheet.effect],
         "not emulated": ", ".join(map(_shown, sheet.not_emulated)),
         "replaces": ", ".join(map(_named, sheet.replaces)),
@@ -120,8 +119,9 @@ def _units(entry: Entry) -> str:
     return ", ".join(f"{AXIS_TYPES[letter]} {unit}" for letter, unit in used.items())
 
 
-def _drive_types(types: tuple[DriveType, ...]) -> str:
-    return ", ".join(f"{one.name} ({one.value})" for one in types) or "all"
+def _drive_types(sheet: Sheet) -> str:
+    named = [f"{one.name} ({one.value})" for one in sheet.drive_types]
+    return ", ".join([*named, *filter(None, [sheet.other_drives])]) or "all"
 
 
 def _named(number: str) -> str:

@@ -214,16 +214,19 @@ def _beyond(
 
     Against a default it is only a warning, because a list may be an excerpt (decided here).
     """
-    other = known.by_number[bound]
+    factor, _, number = bound.rpartition("*")
+    other = known.by_number[number]
     gear = (INDEX.findall(path) or ["0"])[0]
     other_path = PLACEHOLDER.sub(f"[{gear}]", other.path)
     limit = values.get(other_path, other.default)
+    if factor and not isinstance(limit, str):
+        limit *= int(factor)
     if isinstance(limit, str) or (value >= limit if below else value <= limit):
         return
     relation = "below" if below else "above"
     severity = Severity.ERROR if other_path in values else Severity.WARNING
     origin = "" if other_path in values else ", its default"
-    message = f"{path}: {value} is {relation} {other_path} = {limit}{origin} ({bound})"
+    message = f"{path}: {value} is {relation} {factor}{'*' if factor else ''}{other_path} = {limit}{origin} ({bound})"
     yield path, Finding(severity, message)
 
 

@@ -78,7 +78,10 @@ CYCLES: Final = Units("cycles", "cycles", "cycles")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sheet:
-    """One parameter sheet, column by column. A bound given as text is the number of another parameter."""
+    """One parameter sheet, column by column. A bound given as text is the number of another parameter.
+
+    `2*P-AXIS-00008` is twice its value.
+    """
 
     number: str
     """`P-AXIS-00516`; empty where a manual uses the path but prints no number."""
@@ -98,7 +101,9 @@ class Sheet:
     units: Units = NO_UNIT
     axis_types: str = "TRS"
     drive_types: tuple[DriveType, ...] = ()
-    """Empty: all."""
+    """Empty: all, but with `other_drives` only those."""
+    other_drives: str = ""
+    """Drives that P-AXIS-00020 has no number for."""
     since: str = ""
     replaces: tuple[str, ...] = ()
     replaced_by: str = ""

@@ -63,7 +63,8 @@ def _fixed_stop_presets(drive_type: DriveType, values: Mapping[str, Value]) -> d
     presets: dict[str, Value] = {}
     for index, ident in enumerate(PRESETS.get(drive_type, ())):
         here = f"antr.fixed_stop.drive_ident[{index}]."
-        if values.get(here + "default", True) and values.get(here + "default_ident", True):
+        switch = values.get(here + "default_ident", -1)
+        if values.get(here + "default", True) if switch == -1 else switch:
             presets.update((here + item.name, getattr(ident, item.name)) for item in fields(DriveIdent))
     return presets
 

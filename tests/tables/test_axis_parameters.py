@@ -1,5 +1,7 @@
 """Key columns of the axis parameters, typed a second time from the manuals."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from hli_bench.manual.axis import AxisParams
@@ -29,7 +31,7 @@ MEASURING = [
         "TR",
         pytest.mark.req("M-222"),
     ),
-    (775, "kenngr.measure.fixed_stop_detect.min_time", "UNS32", 0, MAX, 0, "TR", pytest.mark.req("M-224")),
+    (775, "kenngr.measure.fixed_stop_detect.min_time", "UNS32", 1, MAX, 0, "TR", pytest.mark.req("M-224")),
     (
         776,
         "kenngr.measure.fixed_stop_detect.start_distance",
@@ -52,7 +54,7 @@ MEASURING = [
         pytest.mark.req("M-230"),
     ),
     (331, "kenngr.fixed_stop_pos_lag_limit", "UNS32", 0, MAX, 0, "TR", pytest.mark.req("M-186", "M-232")),
-    (332, "kenngr.fixed_stop_nbr_cycles", "UNS16", 0, MAX, 0, "TR", pytest.mark.req("M-186", "M-251")),
+    (332, "kenngr.fixed_stop_nbr_cycles", "UNS16", 1, MAX, 0, "TR", pytest.mark.req("M-186", "M-251")),
     (113, "kenngr.mess_neg_flanke", "BOOLEAN", 0, 1, 0, "TR", pytest.mark.req("M-187", "M-240")),
     (115, "kenngr.mess_signal_achs_steuer", "BOOLEAN", 0, 1, 0, "TR", pytest.mark.req("M-187")),
     (116, "kenngr.mess_signal_sercos", "BOOLEAN", 0, 1, 0, "TR", pytest.mark.req("M-187")),
@@ -193,7 +195,7 @@ HOMING = [
 FIXED_STOP = [
     (712, "antr.fixed_stop.pos_lag_limit", "UNS32", 0, MAX, 20000, "TR", pytest.mark.req("F-076")),
     (713, "antr.fixed_stop.window", "UNS32", 0, MAX, 0, "TR", pytest.mark.req("F-077", "F-117")),
-    (714, "antr.fixed_stop.nbr_cycles", "UNS16", 0, MAX, 10, "TR", pytest.mark.req("F-118")),
+    (714, "antr.fixed_stop.nbr_cycles", "UNS16", 1, MAX, 10, "TR", pytest.mark.req("F-118")),
     (715, "antr.fixed_stop.error_on_abort", "BOOLEAN", 0, 1, 1, "TR", ()),
     (716, "antr.fixed_stop.error_not_detected", "BOOLEAN", 0, 1, 1, "TR", ()),
     (717, "antr.fixed_stop.warning_reset_while_detected", "BOOLEAN", 0, 1, 1, "TR", ()),
@@ -251,17 +253,17 @@ FIXED_STOP = [
     (
         821,
         "antr.fixed_stop.drive_ident[i].default_ident",
-        "BOOLEAN",
+        "SGN08",
         0,
         1,
-        1,
+        -1,
         "TR",
         pytest.mark.req("F-110", "H-103"),
     ),
     (762, "antr.fixed_stop.quick_stop_after_detection", "BOOLEAN", 0, 1, 0, "TR", ()),
     (763, "antr.fixed_stop.error_missing_drive_releases", "STRING", None, None, "ERROR", "TR", ()),
     (769, "antr.fixed_stop.detect.pos_lag_limit", "SGN32", MIN, MAX, -1, "TR", pytest.mark.req("H-098")),
-    (770, "antr.fixed_stop.detect.min_time", "UNS32", 0, MAX, 0, "TR", ()),
+    (770, "antr.fixed_stop.detect.min_time", "UNS32", 1, MAX, 0, "TR", ()),
     (771, "antr.fixed_stop.detect.start_distance", "SGN32", MIN, MAX, -1, "TR", ()),
     (772, "antr.fixed_stop.detect.start_distance_per_mille", "SGN16", MIN, MAX, -1, "TR", ()),
     (773, "antr.fixed_stop.detect.max_delta_position_window", "SGN32", MIN, MAX, -1, "TR", ()),
@@ -332,8 +334,18 @@ def rows() -> list[object]:
 
 @pytest.mark.parametrize(("number", "path", "data_type", "low", "high", "default", "axis_types"), rows())
 def test_sheet_matches_manual(
-    number: int, path: str, data_type: str, low: object, high: object, default: object, axis_types: str
+    books: SimpleNamespace,
+    number: int,
+    path: str,
+    data_type: str,
+    low: object,
+    high: object,
+    default: object,
+    axis_types: str,
 ) -> None:
+    assert (
+        books.differences(f"P-AXIS-{number:05d}") == []
+    )  # units, permitted words and drive types among them
     entry = catalogue(AxisParams).by_number[f"P-AXIS-{number:05d}"]
     assert entry.path == path
     assert entry.sheet.data_type == data_type

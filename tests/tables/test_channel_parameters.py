@@ -1,5 +1,7 @@
 """Key columns of the channel parameters, typed a second time from the measurement manual."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from hli_bench.manual.catalogue import catalogue, convert
@@ -24,7 +26,10 @@ from hli_bench.manual.channel import ChannelParams
         (455, "channel_init_actpos_exclusive", "BOOLEAN", 0),
     ],
 )
-def test_sheet_matches_manual(number: int, path: str, data_type: str, default: int) -> None:
+def test_sheet_matches_manual(
+    books: SimpleNamespace, number: int, path: str, data_type: str, default: int
+) -> None:
+    assert books.differences(f"P-CHAN-{number:05d}") == []
     entry = catalogue(ChannelParams).by_number[f"P-CHAN-{number:05d}"]
     assert (entry.path, entry.sheet.data_type, entry.default) == (path, data_type, default)
 

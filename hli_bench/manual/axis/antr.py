@@ -399,14 +399,16 @@ class Antr:
             effect=Effect.ACCEPTED,
         ),
     )
-    acc_reference_value: int = param(
-        1,
+    acc_reference_value: float = param(
+        1.0,
         Sheet(
             number="P-AXIS-00392",
-            data_type=DataType.UNS32,
-            low=1,
-            doc="Reference value of the torque conversion.",
-            source="TF5200 drive command, infosys page 225973131; group, type and default decided here",
+            data_type=DataType.REAL64,
+            low=0,
+            units=Units("N", "Nm", "Nm"),
+            drive_types=(DriveType.SERCOS, DriveType.CANOPEN),
+            doc="Stall torque of the motor: what a torque of 1 in the motor format stands for.",
+            source="TF5200 axis parameters 8.1.12; group of the path as there",
             effect=Effect.ACCEPTED,
         ),
     )

@@ -86,6 +86,8 @@ def permitted_inputs(signal: ProbingSignal, drive_type: DriveType) -> range | No
     """Return the probing inputs that a source has; None where the source uses none. Source: P-AXIS-00517."""
     if signal is ProbingSignal.PLC_EXT_LATCH_CONTROL:
         return range(1, 256)
+    if signal is ProbingSignal.EXT_PROBE_WITH_DRIVE:
+        return range(1, 3)
     if signal is not ProbingSignal.DRIVE:
         return None
     return range(1, 3 if drive_type in TWO_INPUTS else 2)

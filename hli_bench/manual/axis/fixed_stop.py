@@ -48,6 +48,8 @@ class Detect:
             units=MICROSECONDS,
             axis_types="TR",
             since="V2.11.2810.01",
+            low=1,
+            unset=0,
             doc="Time the criteria must hold; 0: P-AXIS-00332.",
             source=axis_page(794987915),
             effect=Effect.EMULATED,
@@ -302,17 +304,25 @@ class DriveIdent:
             effect=Effect.ACCEPTED,
         ),
     )
-    default_ident: bool = param(
-        True,
+    default_ident: int = param(
+        -1,
         Sheet(
             number="P-AXIS-00821",
-            data_type=DataType.BOOLEAN,
+            data_type=DataType.SGN08,
             since="V3.1.3080.11",
             replaces=("P-AXIS-00746",),
             axis_types="TR",
-            drive_types=(DriveType.SERCOS, DriveType.CANOPEN),
-            doc="Preset this object by drive type.",
-            source="fixed stop manual 5.3.2 (remark of P-AXIS-00746); default as P-AXIS-00746",
+            drive_types=(
+                DriveType.SIMULATION,
+                DriveType.SERCOS,
+                DriveType.CANOPEN,
+                DriveType.TERMINAL,
+            ),
+            low=0,
+            high=1,
+            unset=-1,
+            doc="Preset this object by drive type; -1: P-AXIS-00746 decides.",
+            source="TF5200 axis parameters 8.9.21; -1 decided here",
             effect=Effect.ACCEPTED,
         ),
     )
@@ -356,6 +366,7 @@ class FixedStop:
             units=CYCLES,
             axis_types="TR",
             drive_types=(DriveType.SERCOS, DriveType.CANOPEN),
+            low=1,
             doc="Cycles the lag must stay above its limit.",
             source="fixed stop manual 5.3.2",
             effect=Effect.ACCEPTED,

@@ -24,14 +24,15 @@ class Kopf:
         1,
         Sheet(
             number="P-AXIS-00110",
-            data_type=DataType.UNS32,
-            doc="Identification of the axis machine data.",
-            source="homing manual 3.6.1 (example); type and default decided here",
+            data_type=DataType.UNS16,
+            high=1,
+            doc="Whether the list may be loaded anew: 0 no, 1 yes.",
+            source="TF5200 axis parameters 1.1",
             effect=Effect.ACCEPTED,
         ),
     )
     log_achs_name: str = param(
-        "",
+        "X_Achse",
         Sheet(
             number="P-AXIS-00297",
             data_type=DataType.STRING,

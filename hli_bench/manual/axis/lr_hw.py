@@ -16,6 +16,13 @@ class LrHw:
             number="P-AXIS-00136",
             data_type=DataType.SGN16,
             choices=(1, 2),
+            drive_types=(
+                DriveType.SIMULATION,
+                DriveType.CONVENTIONAL,
+                DriveType.TERMINAL,
+                DriveType.LIGHTBUS,
+                DriveType.PROFIDRIVE,
+            ),
             doc="Number of the hardware parameter set.",
             source=axis_page(117845259),
             effect=Effect.ACCEPTED,

@@ -17,7 +17,7 @@ class MeasSimu:
             data_type=DataType.SGN32,
             low=0,
             high=6,
-            axis_types="TR",
+            axis_types="TRS",
             drive_types=(DriveType.SIMULATION,),
             doc=(
                 "Simulated probing event: 0 none, 1 position, 2 cycles, 3 rest path, 4 and 5 target, 6 body."

@@ -1,6 +1,7 @@
 """Usage errors: the bench was used wrongly. What the emulated CNC reports is a record, never one of these."""
 
 from dataclasses import dataclass
+from typing import Final
 
 
 class BenchError(Exception):
@@ -34,3 +35,22 @@ class EnvironmentLacks(BenchError):
     """The computer cannot serve what was asked for: no such CAN interface, port in use."""
 
     exit_status = 3
+
+
+class Stop(BaseException):
+    """Ends a call of a user's code from outside: no error of that code, which may catch every Exception."""
+
+
+STOPS: Final = (KeyboardInterrupt, Stop)
+"""What passes through a user's code and is not its fault."""
+
+
+def told(error: BaseException) -> str:
+    """Return an exception of a user's code as type and text; its `__str__` is a user's code too and may fail."""
+    name = type(error).__name__
+    try:
+        return f"{name}: {error}"
+    except STOPS:
+        raise
+    except BaseException as second:
+        return f"{name} (its text cannot be had: {type(second).__name__})"

@@ -9,6 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from types import CodeType, ModuleType
 
+from hli_bench.base import paths
 from hli_bench.base.errors import InputError
 
 _PACKAGE = Path(__file__).resolve().parent.parent
@@ -26,9 +27,15 @@ def data_file(folder: str, name: str) -> Path:
     """
     places = [_PACKAGE.parent / folder / name, _PACKAGE / "_data" / folder / name, _PACKAGE / folder / name]
     for place in places:
-        if place.exists():
+        if paths.exists(place):
             return place
     raise InputError(f"no {name!r} in {folder}/")
+
+
+def supplied(folder: str) -> list[str]:
+    """Return the names of the files that come with the project in a folder (`programs`, `plc_scripts`)."""
+    places = (_PACKAGE.parent / folder, _PACKAGE / "_data" / folder)
+    return sorted(path.name for place in places if place.is_dir() for path in place.iterdir())
 
 
 def module(name: str) -> ModuleType:
@@ -77,7 +84,7 @@ def script(path: Path) -> ModuleType:
     itself is always read from its text: byte code that Python keeps beside it counts as fresh when the file is changed
     to one of the same size within a second, as scripts made by tests are.
     """
-    if not path.is_file():
+    if not paths.is_file(path):
         raise InputError("no such file", file=str(path))
     name = f"hli_bench_script_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)

@@ -112,5 +112,5 @@ def list_text(path: Path) -> str | None:
     """Return the text of a list file, None when it cannot be read."""
     try:
         return text_of(path)
-    except (OSError, UnicodeDecodeError):
+    except InputError:
         return None

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, Self
 
-from hli_bench.base.endpoints import endpoint
+from hli_bench.base.endpoints import check_key, endpoint
 from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.time import NS_PER_S
 from hli_bench.bench import build, state
@@ -326,6 +326,9 @@ class Bench:
         from hli_bench.bench.door import HliDoor
         from hli_bench.shells.zenoh_server import HliServer
 
+        check_key(self.config.name, "the machine", str(self.config.folder))
+        for terminal in self.config.terminals:
+            check_key(terminal.name, "a terminal", str(self.config.folder))
         layout = self.kernel.image.layout
         server = HliServer(
             endpoint,

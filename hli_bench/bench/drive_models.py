@@ -4,7 +4,7 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from hli_bench.base.errors import BenchError, InputError
+from hli_bench.base.errors import STOPS, BenchError, InputError, told
 from hli_bench.base.loading import data_file, module
 
 
@@ -16,9 +16,11 @@ def drive_model(name: str) -> Any:
         raise
     except SyntaxError as error:
         raise InputError(f"syntax: {error.msg}", error.filename or name, error.lineno or 0) from error
-    except Exception as error:
+    except STOPS:
+        raise
+    except BaseException as error:
         last = traceback.extract_tb(error.__traceback__)[-1]
-        raise InputError(f"{type(error).__name__}: {error}", last.filename, last.lineno or 0) from error
+        raise InputError(told(error), last.filename, last.lineno or 0) from error
     if not callable(getattr(loaded, "create", None)):
         raise InputError(f"{name!r} is no drive model, it has no create()")
     return loaded

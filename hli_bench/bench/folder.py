@@ -9,6 +9,7 @@ from pathlib import Path
 
 from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.base.loading import data_file
+from hli_bench.base.paths import is_file, is_folder
 from hli_bench.base.time import dc_ns
 from hli_bench.bench.axes import axis_of, channel_of, check_axes, list_text, params_of
 from hli_bench.bench.config import MachineConfig
@@ -21,7 +22,7 @@ from hli_bench.plant.build import signal_names
 def machine_folder(machine: str | Path) -> Path:
     """Return the folder of a machine given by name or path. Raises InputError when there is none."""
     folder = Path(machine)
-    if (folder / MACHINE_FILE).is_file():
+    if is_file(folder / MACHINE_FILE):
         return folder
     nothing_there = InputError(f"no {MACHINE_FILE} there", file=str(folder))
     if isinstance(machine, Path) or len(folder.parts) != 1:
@@ -29,10 +30,10 @@ def machine_folder(machine: str | Path) -> Path:
     try:
         shipped = data_file("machines", machine)
     except InputError:
-        if folder.is_dir():
+        if is_folder(folder):
             raise nothing_there from None
         raise
-    if not (shipped / MACHINE_FILE).is_file():
+    if not is_file(shipped / MACHINE_FILE):
         raise nothing_there
     return shipped
 

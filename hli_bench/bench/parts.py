@@ -8,6 +8,7 @@ from typing import Any, Final, cast
 
 from hli_bench.base.errors import InputError
 from hli_bench.base.loading import data_file
+from hli_bench.base.paths import is_file
 from hli_bench.base.time import NS_PER_MS, Ns
 from hli_bench.bench.config import AxisConfig, FaultConfig, PlcConfig
 from hli_bench.bench.schema import BITS
@@ -81,7 +82,7 @@ def _drive_train(values: Values, name: str, *, rotary: bool) -> AxisPlant:
     turn = values.value(table + "increments_per_turn")
     zero = values.value(table + "zero_pulse_offset_increments")
     if zero is None:
-        zero = round(values.value(table + "zero_pulse_offset_mm") / pitch * turn)
+        zero = _zero_pulse(values, table + "zero_pulse_offset_mm", turn / pitch)
     computed: dict[str, Any] = {
         "pitch_mm": pitch,
         "zero_pulse_increments": zero,
@@ -91,6 +92,17 @@ def _drive_train(values: Values, name: str, *, rotary: bool) -> AxisPlant:
         item.name: values.value(table + item.name) for item in fields(AxisPlant) if item.name not in computed
     }
     return AxisPlant(**rest, **computed)
+
+
+def _zero_pulse(values: Values, path: str, increments_per_mm: float) -> int:
+    """Return the place of the zero pulse in increments; one that no encoder of 32 bits counts to is refused."""
+    zero: int = round(values.value(path) * increments_per_mm)
+    if abs(zero) >= 2**31:
+        limit = 2**31 / increments_per_mm
+        message = f"{path}: {values.value(path)} is beyond the encoder's +-{limit:g}"
+        values.fail(values.given.get(path), message)
+        return 0
+    return zero
 
 
 def terminals_of(values: Values) -> tuple[TerminalSettings, ...]:
@@ -154,7 +166,7 @@ def plcs_of(values: Values) -> tuple[PlcConfig, ...]:
 def _script(values: Values, table: str, script: str) -> Path:
     """Return the file of a PLC script: of the machine folder, among those supplied, or a path."""
     for candidate in (values.folder / script, Path(script)):
-        if candidate.is_file():
+        if is_file(candidate):
             return candidate
     try:
         return data_file("plc_scripts", script)

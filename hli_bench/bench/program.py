@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from hli_bench.base.errors import InputError
+from hli_bench.base.paths import is_file
 
 
 @contextmanager
@@ -29,10 +30,10 @@ def opened(program: str | Path | Iterable[str], name: str = "") -> Iterator[tupl
 
 @contextmanager
 def _file(path: Path) -> Iterator[Iterable[str]]:
-    if not path.is_file():
+    if not is_file(path):
         raise InputError("no such NC program", file=str(path))
     try:
-        file = path.open(encoding="utf-8", errors="replace")
+        file = path.open(encoding="utf-8-sig", errors="replace")
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", file=str(path)) from error
     with file:

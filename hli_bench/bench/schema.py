@@ -28,6 +28,10 @@ SIDES: Final = ("above", "below")
 Plain = bool | int | float | str | datetime
 
 
+SIZES: Final = (1e-12, 1e12)
+"""Numbers other than 0 lie between, whatever the unit (decided here): no law divides by less."""
+
+
 class Kind(StrEnum):
     """What a key takes."""
 
@@ -81,8 +85,13 @@ class Key:
         too_low = self.low is not None and value < self.low
         too_high = self.high is not None and value > self.high
         not_above = self.above is not None and value <= self.above
-        if too_low or too_high or not_above or (self.step and value % self.step):
+        if too_low or too_high or not_above or (self.step and value % self.step) or not sizeable(value):
             raise ValueError(value)
+
+
+def sizeable(value: float) -> bool:
+    """Tell whether a number is 0 or of a size that a machine can have."""
+    return value == 0 or SIZES[0] <= abs(value) <= SIZES[1]
 
 
 def _typed(kind: Kind, raw: object) -> Plain:
@@ -190,7 +199,11 @@ DRIVE_TRAIN: Final = (
     _integer("plant.axis.<AXIS>.increments_per_turn", 1_048_576, "encoder increments per turn", 4, 2**31 - 1),
     _number("plant.axis.<AXIS>.zero_pulse_offset_mm", 0.0, "zero pulse nearest to 0, machine coordinate"),
     _integer(
-        "plant.axis.<AXIS>.zero_pulse_offset_increments", None, "the same in increments, goes first", None
+        "plant.axis.<AXIS>.zero_pulse_offset_increments",
+        None,
+        "the same in increments, goes first",
+        -(2**31),
+        2**31 - 1,
     ),
     _number("plant.axis.<AXIS>.kv_per_s", 50.0, "position loop gain, 1/s", above=0.0),
     _number("plant.axis.<AXIS>.speed_bandwidth_per_s", 300.0, "speed loop gain over inertia, 1/s", above=0.0),

@@ -40,12 +40,7 @@ class Given:
 
 def toml_text(path: Path) -> str:
     """Return the text of a TOML file. Raises InputError when it cannot be read."""
-    try:
-        return text_of(path)
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", file=str(path)) from error
-    except UnicodeDecodeError as error:
-        raise InputError("is not UTF-8 text", file=str(path)) from error
+    return text_of(path)
 
 
 @lru_cache(maxsize=64)
@@ -70,6 +65,8 @@ def toml_tree(text: str, file: str) -> dict[str, object]:
         line, column = (int(place[1]), int(place[2])) if place else (0, 0)
         message = re.sub(r"\s*\(at [^)]*\)", "", str(error))
         raise InputError(f"not valid TOML: {message}", file, line, column) from error
+    except RecursionError as error:
+        raise InputError("not valid TOML: nested too deeply", file) from error
 
 
 def line_numbers(text: str) -> dict[str, int]:
@@ -122,7 +119,7 @@ def toml_value(text: str) -> object:
     """Return the text as a TOML value, or as it is."""
     try:
         tree = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
+    except (tomllib.TOMLDecodeError, RecursionError):
         return text
     return tree["value"] if len(tree) == 1 else text
 

@@ -10,11 +10,13 @@ from typing import Any, Final
 
 from hli_bench.base.errors import InputError
 from hli_bench.bench.config import MachineConfig
-from hli_bench.bench.schema import BITS, KEYS, Key, Plain, pattern
+from hli_bench.bench.schema import BITS, KEYS, SIZES, Key, Kind, Plain, pattern, sizeable
 from hli_bench.bench.sources import Given
 from hli_bench.manual.lists import Finding, Severity
 
 MACHINE_FILE: Final = "machine.toml"
+LONGEST: Final = 200
+"""Characters of a value that a message repeats."""
 PATTERNS: Final = tuple((pattern(key), key) for key in KEYS)
 
 
@@ -94,7 +96,13 @@ class Values:
             self.checked[path] = key.accept(given.value)
         except (ValueError, OverflowError):
             value = str(given.value) if isinstance(given.value, date) else repr(given.value)
-            self.fail(given, f"{path}: {value} is not valid, expected {key.expected()}")
+            if len(value) > LONGEST:
+                value = value[:LONGEST] + "..."
+            number = (
+                key.kind is Kind.NUMBER and isinstance(given.value, int | float) and not sizeable(given.value)
+            )
+            size = f", 0 or {SIZES[0]:g} to {SIZES[1]:g} in size" if number else ""
+            self.fail(given, f"{path}: {value} is not valid, expected {key.expected()}{size}")
 
     def fail(self, given: Given | None, message: str) -> None:
         """Keep what is wrong with a value, None: with the folder."""

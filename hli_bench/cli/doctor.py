@@ -3,6 +3,7 @@
 import argparse
 
 from hli_bench.cli import tables
+from hli_bench.cli.console import say
 from hli_bench.cli.options import Commands
 
 
@@ -24,7 +25,7 @@ def execute(arguments: argparse.Namespace) -> int:
     found = findings()
     rows = [("ok" if one.ok else "lacks", one.name, one.detail) for one in found]
     for one, line in zip(found, tables.lines(rows), strict=True):
-        print(line)
+        say(line)
         if not one.ok:
-            print(f"       {one.advice}")
+            say(f"       {one.advice}")
     return 0

@@ -2,7 +2,6 @@
 
 import argparse
 import pkgutil
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
@@ -11,6 +10,7 @@ from hli_bench.base.errors import InputError
 from hli_bench.base.loading import module
 from hli_bench.bench.drive_models import drive_model, eds_of
 from hli_bench.cli import tables
+from hli_bench.cli.console import say, tell
 from hli_bench.cli.options import Commands
 from hli_bench.protocols.canopen.cia402_objects import lacking
 from hli_bench.protocols.canopen.eds import Entry, ObjectDictionary, load
@@ -50,7 +50,7 @@ def show_model(arguments: argparse.Namespace) -> int:
     if path is None:
         raise InputError(f"{name} does not say what its EDS is: MODEL.eds expected")
     for line in tables.lines([HEADS, *map(row, load(path))]):
-        print(line)
+        say(line)
     return 0
 
 
@@ -94,10 +94,10 @@ def check_file(path: Path) -> int:
         if is_402(described) and (missing := lacking(described.entries)):
             raise InputError(f"a CiA 402 drive needs the objects {', '.join(missing)}", file=str(path))
     except InputError as error:
-        print(error, file=sys.stderr)
+        tell(error)
         return error.exit_status
     kind = "CiA 402 drive" if is_402(described) else "CANopen device"
-    print(f"{path}: {kind}, {len(described.names)} objects, {len(described.entries)} entries, accepted")
+    say(f"{path}: {kind}, {len(described.names)} objects, {len(described.entries)} entries, accepted")
     return 0
 
 

@@ -1,12 +1,12 @@
 """`hli-bench hli ls/get/set/watch`: HLI and terminal elements of a bench that is up."""
 
 import argparse
-import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from hli_bench.base.errors import InputError
 from hli_bench.cli import tables
+from hli_bench.cli.console import say, tell
 from hli_bench.cli.options import Commands, add_connect
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def list_elements(arguments: argparse.Namespace) -> int:
     with _client(arguments) as client:
         rows = client.ls(arguments.path)
     for line in tables.lines([("PATH", "TYPE", "UNIT", "ACCESS"), *rows]):
-        print(line)
+        say(line)
     return 0
 
 
@@ -56,9 +56,9 @@ def get_value(arguments: argparse.Namespace) -> int:
         value = client.get(arguments.path)
     if isinstance(value, Mapping):
         for line in tables.lines((name, tables.value(item)) for name, item in value.items()):
-            print(line)
+            say(line)
     else:
-        print(tables.value(value))
+        say(tables.value(value))
     return 0
 
 
@@ -70,7 +70,7 @@ def set_value(arguments: argparse.Namespace) -> int:
         except InputError as error:
             raise InputError(f"{arguments.path}: {error.message}") from error
     if note:
-        print(f"note: {arguments.path} {note}", file=sys.stderr)
+        tell(f"note: {arguments.path} {note}")
     return 0
 
 
@@ -79,7 +79,7 @@ def watch_value(arguments: argparse.Namespace) -> int:
     try:
         with _client(arguments) as client:
             for value in client.watch(arguments.path):
-                print(_line(value), flush=True)
+                say(_line(value), at_once=True)
     except KeyboardInterrupt:
         return 0
     return 0

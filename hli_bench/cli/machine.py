@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hli_bench.base.errors import EnvironmentLacks, InputError, NotEmulated
+from hli_bench.cli.console import say
 from hli_bench.cli.options import Commands, machine_name
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def copy_machine(arguments: argparse.Namespace) -> int:
         # copytree gathers the errors of all files as (from, to, reason).
         reason = error.args[0][0][2] if isinstance(error, shutil.Error) else error.strerror
         raise EnvironmentLacks(f"{target}: cannot be written: {reason}") from error
-    print(f"{target}: copied from {source}; use it with --machine {target}")
+    say(f"{target}: copied from {source}; use it with --machine {target}")
     return 0
 
 
@@ -59,7 +60,7 @@ def print_schema(arguments: argparse.Namespace) -> int:
     """Print the schema."""
     from hli_bench.bench import schema
 
-    print(schema.text(), end="")
+    say(schema.text().rstrip("\n"))
     return 0
 
 
@@ -73,8 +74,8 @@ def check_machine(arguments: argparse.Namespace) -> int:
     config = load(machine_name(arguments.machine, ""), parse_set(arguments.set or []))
     check_named(config)
     for note in config.notes:
-        print(f"{note.place()}: {note.severity}: {note.message}")
-    print(
+        say(f"{note.place()}: {note.severity}: {note.message}")
+    say(
         f"{config.folder}: {len(config.axes)} axes ({', '.join(axis.name for axis in config.axes)}), "
         f"{len(config.terminals)} terminals, {len(config.plcs)} PLC tasks, accepted"
     )

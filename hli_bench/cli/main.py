@@ -34,6 +34,7 @@ from hli_bench.cli import (
     trace,
     unbuilt,
 )
+from hli_bench.cli.console import say, tell
 
 INTERRUPTED: Final = 130
 """Exit status after Ctrl-C, as a shell reports it."""
@@ -51,7 +52,7 @@ class _Version(argparse.Action):
     """Prints the version; looked for when asked, because that takes longer than the rest of a start."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> NoReturn:
-        print("hli-bench", version())
+        say(f"hli-bench {version()}")
         parser.exit()
 
 
@@ -93,7 +94,7 @@ def _execute(argv: Sequence[str] | None) -> int:
     try:
         status: int = arguments.execute(arguments)
     except BenchError as error:
-        print(error, file=sys.stderr)
+        tell(error)
         return error.exit_status
     return status
 
@@ -116,7 +117,7 @@ def _failed(error: Exception) -> int:
     # Who writes a file says which one it was; here it was a standard stream.
     if number == errno.ENOSPC:
         with suppress(OSError):
-            print(f"standard output: cannot be written: {os.strerror(number)}", file=sys.stderr)
+            tell(f"standard output: cannot be written: {os.strerror(number)}")
     # What is still buffered must not fail again when the interpreter flushes it.
     for stream in (sys.stdout, sys.stderr):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

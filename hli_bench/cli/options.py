@@ -1,7 +1,9 @@
 """Options that several commands share, and what their texts mean."""
 
 import argparse
+import difflib
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -9,7 +11,8 @@ from typing import Any, Final
 from hli_bench.base import endpoints
 from hli_bench.base.endpoints import DEFAULT_ENDPOINT
 from hli_bench.base.errors import InputError, NotEmulated
-from hli_bench.base.loading import data_file
+from hli_bench.base.loading import data_file, supplied
+from hli_bench.base.paths import is_file, is_folder
 
 Commands = Any
 """The subparsers action of argparse, whose class is private."""
@@ -135,7 +138,7 @@ def bench_options(arguments: argparse.Namespace) -> BenchOptions:
 
 def machine_name(text: str, place: str = "--machine") -> str:
     """Return `text` if it is a folder or a machine of the package. Raises InputError that names `place`."""
-    if not Path(text).is_dir():
+    if not is_folder(Path(text)):
         try:
             data_file("machines", text)
         except InputError as error:
@@ -150,19 +153,23 @@ def plc_scripts(texts: list[str]) -> list[str]:
         return []
     if NO_PLC in texts:
         raise InputError(f"{NO_PLC} stands for itself, not beside a script", file="--plc")
-    return [str(supplied_file("plc_scripts", text)) for text in texts]
+    return [str(supplied_file("plc_scripts", text, ".py")) for text in texts]
 
 
-def supplied_file(folder: str, text: str) -> Path:
-    """Return a file by its path or, if there is none, by its name among those supplied in `folder`."""
-    path = Path(text)
-    if path.is_dir():
+def supplied_file(folder: str, text: str, suffix: str) -> Path:
+    """Return a file by its path or, if there is none, by its name among those supplied in `folder`.
+
+    The suffix may be left out. Raises InputError with the names that come near.
+    """
+    names = (text,) if text.endswith(suffix) else (text, text + suffix)
+    for path in map(Path, names):
+        if is_file(path):
+            return path
+        if len(path.parts) == 1:
+            with suppress(InputError):
+                return data_file(folder, path.name)
+    if is_folder(Path(text)):
         raise InputError("is a folder, expected a file", file=text)
-    if path.is_file():
-        return path
-    if len(path.parts) == 1:
-        try:
-            return data_file(folder, text)
-        except InputError:
-            pass
-    raise InputError(f"no such file, nor one of {folder}/", file=text)
+    near = difflib.get_close_matches(names[-1], supplied(folder), n=3, cutoff=0.6)
+    hint = f" (did you mean {' or '.join(near)}?)" if near else ""
+    raise InputError(f"no such file, nor one of {folder}/{hint}", file=text)

@@ -1,14 +1,15 @@
 """`hli-bench params show / check`: the sheet of a parameter, and what is wrong with a list file."""
 
 import argparse
-import sys
 from collections.abc import Iterator, Mapping
 from enum import IntEnum, IntFlag
 from pathlib import Path
 from typing import Any, Final
 
+from hli_bench.base import paths
 from hli_bench.base.errors import InputError
 from hli_bench.cli import tables
+from hli_bench.cli.console import say, tell
 from hli_bench.cli.options import Commands
 from hli_bench.manual.axis import AxisParams
 from hli_bench.manual.catalogue import Catalogue, catalogue
@@ -53,9 +54,9 @@ def show_sheets(arguments: argparse.Namespace) -> int:
     """Print the sheets, an empty line between them. Raises InputError for an unknown parameter."""
     for number, (kind, entry) in enumerate([find(name) for name in arguments.names]):
         if number:
-            print()
+            say("")
         for line in tables.lines(sheet_rows(kind, entry)):
-            print(line)
+            say(line)
     return 0
 
 
@@ -153,24 +154,19 @@ def check_lists(arguments: argparse.Namespace) -> int:
 
 def check_list(path: Path, kind: str | None) -> int:
     """Print the findings of one list and what it is; errors go to standard error. Raises InputError."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", file=str(path)) from error
-    except UnicodeDecodeError as error:
-        raise InputError("is not UTF-8 text", file=str(path)) from error
+    text = paths.text(path)
     kind = kind or kind_of(text)
     cls = KINDS[kind]
     parsed = parse_list(cls, text, str(path))
     errors = [finding for finding in parsed.findings if finding.severity is Severity.ERROR]
     for finding in sorted(parsed.findings, key=lambda one: one.line):
-        stream = sys.stderr if finding.severity is Severity.ERROR else sys.stdout
-        print(f"{path}:{finding.line}: {finding.severity}: {finding.message}", file=stream)
+        show = tell if finding.severity is Severity.ERROR else say
+        show(f"{path}:{finding.line}: {finding.severity}: {finding.message}")
     if errors:
         return BAD
     for refused, text in refusals(cls, parsed.values):
-        print(f"{path}:{parsed.lines[refused]}: note: NotEmulated: {text}")
-    print(f"{path}: {ARTICLE[kind]} with {len(parsed.values)} parameters, accepted")
+        say(f"{path}:{parsed.lines[refused]}: note: NotEmulated: {text}")
+    say(f"{path}: {ARTICLE[kind]} with {len(parsed.values)} parameters, accepted")
     return 0
 
 

@@ -1,7 +1,9 @@
 """`hli-bench plc`: a PLC script attached to a bench that is up."""
 
 import argparse
+from functools import partial
 
+from hli_bench.cli.console import say
 from hli_bench.cli.options import Commands, add_connect, supplied_file
 
 
@@ -20,7 +22,7 @@ def add(commands: Commands) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the script until the bench ends."""
-    script = supplied_file("plc_scripts", arguments.script)
+    script = supplied_file("plc_scripts", arguments.script, ".py")
     from hli_bench.shells.plc_process import attach
 
     try:
@@ -29,7 +31,7 @@ def execute(arguments: argparse.Namespace) -> int:
             arguments.connect,
             arguments.machine,
             arguments.name,
-            on_line=lambda line: print(line, flush=True),
+            on_line=partial(say, at_once=True),
         )
     except KeyboardInterrupt:
         return 0

@@ -1,8 +1,8 @@
 """`hli-bench reset`: CNC reset of a bench that is up."""
 
 import argparse
-import sys
 
+from hli_bench.cli.console import tell
 from hli_bench.cli.options import Commands, add_connect
 
 
@@ -25,5 +25,5 @@ def execute(arguments: argparse.Namespace) -> int:
     with HliClient(arguments.connect, arguments.machine) as client:
         note = client.reset()
     if note:
-        print(note, file=sys.stderr)
+        tell(note)
     return 1 if note else 0

@@ -3,13 +3,14 @@
 import argparse
 import json
 import math
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from hli_bench.base.errors import BenchError, EnvironmentLacks, InputError
+from hli_bench.base import paths
+from hli_bench.base.errors import BenchError, InputError
+from hli_bench.cli.console import say_line, tell
 from hli_bench.cli.options import (
     BenchOptions,
     Commands,
@@ -18,6 +19,7 @@ from hli_bench.cli.options import (
     endpoint,
     supplied_file,
 )
+from hli_bench.shells.whole_file import check_writable, write_whole
 
 if TYPE_CHECKING:
     from hli_bench.bench.bench import Bench
@@ -73,7 +75,9 @@ def add(commands: Commands) -> None:
         description="Runs an NC program and ends with it. Each #MSG text is a line on standard output; "
         "errors and warnings of the CNC go to standard error.",
     )
-    parser.add_argument("program", metavar="PROGRAM.nc", help="a file, or the name of a supplied program")
+    parser.add_argument(
+        "program", metavar="PROGRAM.nc", help="a file, or the name of a supplied program, with or without .nc"
+    )
     add_bench(parser, pace="free", zenoh=None)
     parser.add_argument(
         "--connect", metavar="ENDPOINT", type=endpoint, help="use the bench that listens there"
@@ -107,7 +111,7 @@ def seconds(text: str) -> float:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the program and return the exit status."""
-    program = supplied_file("programs", arguments.program)
+    program = supplied_file("programs", arguments.program, ".nc")
     if arguments.connect:
         return _run_connected(program, arguments)
     options = bench_options(arguments)
@@ -117,9 +121,9 @@ def execute(arguments: argparse.Namespace) -> int:
     with _collected(failures):
         finish(result.to_dict(), arguments.result)
     for failure in failures:
-        print(failure, file=sys.stderr)
+        tell(failure)
     if result.status == "aborted" and arguments.limit is not None and result.sim_s >= arguments.limit:
-        print(f"--limit: not done after {arguments.limit:g} s of machine time", file=sys.stderr)
+        tell(f"--limit: not done after {arguments.limit:g} s of machine time")
         return EXIT_STATUS["error"]
     if failures and result.status == "completed":
         return failures[0].exit_status
@@ -127,21 +131,32 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def prepare(arguments: argparse.Namespace, read: Iterable[Path]) -> None:
-    """Make sure that all files can be written; what an earlier run left there is emptied. Raises InputError.
+    """Make sure that all files can be written. Raises InputError.
 
-    None may be one that the run reads, or the same as another.
+    What an earlier run left of those that are written while the program runs is emptied; result and report are
+    replaced when the new ones are whole. None may be one that the run reads, or the same as another.
     """
     taken = {path.resolve(): "is read by this run" for path in read}
     given = [
         (Path(file), f"--{name.replace('_', '-')}") for name in OUTPUTS if (file := getattr(arguments, name))
     ]
     for path, option in given:
-        place = path.resolve()
-        if place in taken and (path.is_file() or not path.exists()):
+        place = _resolved(path, option)
+        if place in taken and (paths.is_file(path) or not paths.exists(path)):
             raise InputError(f"{option}: {taken[place]}", file=str(path))
         taken[place] = f"is given to {option} too"
     for path, option in given:
-        _empty(path, option)
+        check_writable(path, option)
+        if option.removeprefix("--").replace("-", "_") in RECORDED:
+            _empty(path, option)
+
+
+def _resolved(path: Path, option: str) -> Path:
+    """Return the place of a file to write. Raises InputError for a name that no file can have."""
+    try:
+        return path.resolve()
+    except ValueError as error:
+        raise InputError(f"{option}: no file can have that name", file=repr(str(path))) from error
 
 
 def _files_read(options: BenchOptions) -> Iterator[Path]:
@@ -153,7 +168,7 @@ def _files_read(options: BenchOptions) -> Iterator[Path]:
     yield from (path for path in folder.iterdir() if path.suffix in OF_A_MACHINE)
     for value in options.settings.values():
         if isinstance(value, str):
-            yield from (Path(value), folder / value)
+            yield from filter(paths.is_file, (Path(value), folder / value))
 
 
 def _empty(path: Path, option: str) -> None:
@@ -171,29 +186,19 @@ def finish(result: Mapping[str, Any], file: str | None) -> None:
 
     Raises EnvironmentLacks when it cannot be written.
     """
-    print(
+    tell(
         f"{result['program']}: {result['status']}, {result['sim_s']:.3f} s of machine time "
         f"in {result['wall_s']:.1f} s, {result['cycles']} cycles",
-        file=sys.stderr,
     )
     if result.get("late_cycles"):
-        print(
-            f"{result['late_cycles']} times of a cycle were missed in {result['cycles']} cycles",
-            file=sys.stderr,
-        )
+        tell(f"{result['late_cycles']} times of a cycle were missed in {result['cycles']} cycles")
     for note in result["notes"]:
-        print(f"note: {note}", file=sys.stderr)
+        tell(f"note: {note}")
     if file is not None:
         remarked = (key for key in REMARK_KEYS if result.get(key))
         keys = (*RESULT_KEYS, *remarked, *(key for key in PACED_KEYS if key in result))
-        _write(file, json.dumps({key: result[key] for key in keys}, indent=2, ensure_ascii=False) + "\n")
-
-
-def _write(file: str, text: str) -> None:
-    try:
-        Path(file).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise EnvironmentLacks(f"{file}: cannot be written: {error.strerror}") from error
+        text = json.dumps({key: result[key] for key in keys}, indent=2, ensure_ascii=False)
+        write_whole(Path(file), text + "\n")
 
 
 # -- a bench of its own -----------------------------------------------------------------------------------
@@ -214,7 +219,7 @@ def _run(
         plc=options.plc,
         pace=options.pace,
         on_record=_print_record,
-        on_note=_print_note,
+        on_note=tell,
         realtime=options.realtime,
         **_buses(options),
     ) as bench:
@@ -239,19 +244,15 @@ def _buses(options: BenchOptions) -> dict[str, Any]:
     return {key: value for key, value in given.items() if value is not None}
 
 
-def _print_note(note: str) -> None:
-    print(note, file=sys.stderr, flush=True)
-
-
 def _print_record(record: "Emitted") -> None:
     """Print what the CNC says as it comes."""
     from hli_bench.bench.result import error_of
     from hli_bench.kernel.records import CncError, MessageText
 
     if isinstance(record, MessageText):
-        print(record.text, flush=True)
+        say_line(record.text)
     elif isinstance(record, CncError):
-        print(error_of(record), file=sys.stderr, flush=True)
+        tell(error_of(record))
 
 
 @contextmanager
@@ -267,7 +268,7 @@ def _recorders(
             from hli_bench.shells.recorder import What, record
 
             what = What(kind, Path(file), bench.kernel.setup, bench.config.name, options.settings)
-            recorder = record(what, bench.kernel.rows.log, paced=options.pace == "real", on_note=_print_note)
+            recorder = record(what, bench.kernel.rows.log, paced=options.pace == "real", on_note=tell)
             bench.engine.observers.append(recorder)
             closing.callback(_close, recorder, failures)
         yield
@@ -298,7 +299,7 @@ def _reporter(bench: "Bench") -> Callable[["Result", str], None]:
     def write(result: "Result", file: str) -> None:
         recording.plcs = {plc.name: plc.period_cycles * bench.config.cycle_ns for plc in bench.engine.plcs}
         page = report_html(recording, result.to_dict(), bench.config.name)
-        _write(file, page)
+        write_whole(Path(file), page)
 
     return write
 
@@ -325,12 +326,12 @@ def _run_connected(program: Path, arguments: argparse.Namespace) -> int:
                 raise
             result = client.interrupted
             if result["status"] == "aborted":
-                _print_note(
+                tell(
                     f"stopped: the bench at {arguments.connect} has aborted {arguments.program} and stays up"
                 )
     for message in result["messages"]:
-        print(message["text"], flush=True)
+        say_line(message["text"])
     for error in result["errors"]:
-        print(Error(**error), file=sys.stderr)
+        tell(Error(**error))
     finish(result, arguments.result)
     return EXIT_STATUS[result["status"]]

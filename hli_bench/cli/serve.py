@@ -1,9 +1,10 @@
 """`hli-bench serve`: a bench that stays up."""
 
 import argparse
-import sys
+from functools import partial
 
 from hli_bench.base.endpoints import DEFAULT_ENDPOINT
+from hli_bench.cli.console import say, tell
 from hli_bench.cli.options import Commands, add_bench, bench_options
 
 
@@ -32,9 +33,9 @@ def execute(arguments: argparse.Namespace) -> int:
             pace=options.pace,
             can=options.can,
             zenoh=options.zenoh,
-            on_line=lambda line: print(line, flush=True),
+            on_line=partial(say, at_once=True),
             realtime=options.realtime,
-            on_note=lambda note: print(note, file=sys.stderr, flush=True),
+            on_note=tell,
         )
     except KeyboardInterrupt:
         return 0

@@ -4,6 +4,7 @@ import argparse
 import json
 
 from hli_bench.cli import tables
+from hli_bench.cli.console import say
 from hli_bench.cli.options import Commands, add_connect
 
 
@@ -27,10 +28,10 @@ def execute(arguments: argparse.Namespace) -> int:
     with HliClient(arguments.connect, arguments.machine) as client:
         state = client.state()
     if arguments.json:
-        print(json.dumps(state, indent=2))
+        say(json.dumps(state, indent=2))
     else:
         for axis in state["axes"]:
             axis["statusword"] = f"0x{axis['statusword']:04X}"
         for line in tables.tree(state):
-            print(line)
+            say(line)
     return 0

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from hli_bench.base.errors import InputError
+from hli_bench.cli.console import tell
 from hli_bench.cli.options import Commands, supplied_file
 
 MOST_WORKERS: Final = 256
@@ -46,18 +47,15 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     if not 1 <= workers <= MOST_WORKERS:
         raise InputError(f"{workers} is not valid, expected 1 to {MOST_WORKERS}", file="--workers")
-    file = supplied_file("campaigns", arguments.campaign)
+    file = supplied_file("campaigns", arguments.campaign, ".toml")
     from hli_bench.laws import native
     from hli_bench.shells.apart import apart
     from hli_bench.sweep import campaign, engines, sweep
 
-    native.prepare(lambda: print(native.COMPILING, file=sys.stderr, flush=True), apart)
+    native.prepare(lambda: tell(native.COMPILING), apart)
     engine = engines.engine(arguments.engine, workers)
     taken = campaign.read(file)
     folder = Path("out", file.stem) if arguments.out is None else Path(arguments.out)
     done = sweep.run(taken, folder, engine, workers, sys.stderr)
-    print(
-        f"{taken.runs} runs, {done} of them now: {folder / 'runs.parquet'}, {folder / sweep.REPORT}",
-        file=sys.stderr,
-    )
+    tell(f"{taken.runs} runs, {done} of them now: {folder / 'runs.parquet'}, {folder / sweep.REPORT}")
     return 0

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import NS_PER_MS, NS_PER_S
 from hli_bench.base.units import mm
+from hli_bench.cli.console import say, tell
 from hli_bench.cli.options import Commands
 
 if TYPE_CHECKING:
@@ -125,7 +126,7 @@ def _reader(file: str) -> "TraceReader":
 def _warn_if_torn(reader: "TraceReader") -> None:
     if reader.torn:
         text = "cut off: the recording was not ended, this is what stands in its complete chunks"
-        print(f"warning: {reader.path}: {text}", file=sys.stderr)
+        tell(f"warning: {reader.path}: {text}")
 
 
 # -- show -------------------------------------------------------------------------------------------------
@@ -150,11 +151,11 @@ def show_trace(arguments: argparse.Namespace) -> int:
     )
     count = 0
     for line in shown(reader, selection):
-        print(line)
+        say(line)
         count += 1
     if count > LONG and not arguments.channel and not arguments.axis:
         choices = f"--channel ({'|'.join(CHANNELS)}), --axis ({'|'.join(known)})"
-        print(f"{count} lines; fewer with {choices}, --from, --to or a larger --every", file=sys.stderr)
+        tell(f"{count} lines; fewer with {choices}, --from, --to or a larger --every")
     _warn_if_torn(reader)
     return 0
 
@@ -288,15 +289,15 @@ def diff_traces(arguments: argparse.Namespace) -> int:
     for reader in readers:
         _warn_if_torn(reader)
     if not found.counts:
-        print("equal")
+        say("equal")
         return EQUAL
     for difference in (*found.meta, *([found.first] if found.first else [])):
-        print(_difference_text(difference))
+        say(_difference_text(difference))
         for reader, value in zip(readers, (difference.left, difference.right), strict=True):
-            print(f"  {reader.path}: {_value_text(value)}")
+            say(f"  {reader.path}: {_value_text(value)}")
     counts = ", ".join(f"{found.counts[name]} in {name}" for name in CHANNELS if found.counts[name])
     total = found.counts.total()
-    print(f"{total} difference{'s' if total > 1 else ''}: {counts}")
+    say(f"{total} difference{'s' if total > 1 else ''}: {counts}")
     return DIFFERENT
 
 
@@ -330,5 +331,5 @@ def export_trace(arguments: argparse.Namespace) -> int:
     except OSError as error:
         raise InputError(f"--out: cannot be written: {error.strerror}", file=str(out)) from error
     _warn_if_torn(reader)
-    print(f"{out}: {arguments.format}", file=sys.stderr)
+    tell(f"{out}: {arguments.format}")
     return 0

@@ -67,6 +67,9 @@ class Catalogue:
         if entry is None:
             raise InputError(f"{path}: unknown parameter{self._hint(path)}")
         indices = [int(index) for index in INDEX.findall(path)]
+        if len(indices) < len(entry.sizes):
+            written = PLACEHOLDER.sub("[0]", entry.path)
+            raise InputError(f"{path}: the index is missing, expected e.g. {written}")
         for index, size in zip(indices, entry.sizes, strict=True):
             if index >= size:
                 raise InputError(f"{path}: index {index} is out of range 0..{size - 1}")

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hli_bench.base import loading
-from hli_bench.base.errors import InputError
+from hli_bench.base.errors import STOPS, InputError, told
 
 
 class Plc:
@@ -37,7 +37,9 @@ def load(path: Path) -> Any:
     except SyntaxError as error:
         place = (error.filename or str(path), error.lineno or 0, error.offset or 0)
         raise InputError(f"syntax: {error.msg}", *place) from error
-    except (Exception, SystemExit) as error:
+    except STOPS:
+        raise
+    except BaseException as error:
         raise script_error(error, path) from error
     found = {
         name: value
@@ -54,7 +56,9 @@ def load(path: Path) -> Any:
         )
     try:
         return chosen()
-    except (Exception, SystemExit) as error:
+    except STOPS:
+        raise
+    except BaseException as error:
         raise script_error(error, path) from error
 
 
@@ -70,7 +74,7 @@ def period_of(script: Any, path: Path) -> int:
 
 def script_error(error: BaseException, path: Path) -> InputError:
     """Return `error` as the error of the script at `path`, with the line of the script that it came from."""
-    return InputError(f"{type(error).__name__}: {error}", str(path), line_of(error, path))
+    return InputError(told(error), str(path), line_of(error, path))
 
 
 def line_of(error: BaseException, path: Path) -> int:

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from hli_bench.base.errors import STOPS
 from hli_bench.base.time import Ns
 from hli_bench.plc.function_blocks import TASK_TIME
 from hli_bench.plc.names import Frame, Hli, io_root
@@ -74,7 +75,9 @@ class Task:
                 self._start(self._hli, self._io)
                 self._start = None
             self._cycle(self._hli, self._io)
-        except (Exception, SystemExit) as error:
+        except STOPS:
+            raise
+        except BaseException as error:
             raise script_error(error, self._file) from error
         if not frame.changes:
             return Commands(self.name, cycle, ())

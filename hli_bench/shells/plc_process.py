@@ -15,7 +15,8 @@ from typing import Any, Final
 import zenoh
 
 from hli_bench.base import garbage
-from hli_bench.base.errors import BenchError, InputError
+from hli_bench.base.endpoints import check_key
+from hli_bench.base.errors import BenchError
 from hli_bench.base.loading import child_command
 from hli_bench.plc import Task, load, period_of
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
@@ -29,7 +30,6 @@ WAITING: Final = 100_000
 """Messages that may wait for a script that dawdles in real pace; with more of them its link to the bench stands."""
 MOST_LINES: Final = 1000
 """So many lines are told; whoever puts to the bench's keys could make ever new ones."""
-NOT_IN_A_KEY: Final = "/*$?#"
 
 DETACHED: Final = b"detached"
 GONE: Final = b"gone"
@@ -240,8 +240,7 @@ def attach(
     Raises EnvironmentLacks when no bench is there, InputError when the script fails or the bench refuses it.
     """
     name = name or script.stem
-    if set(name) & set(NOT_IN_A_KEY):
-        raise InputError(f"plc {name!r}: a name may hold none of {' '.join(NOT_IN_A_KEY)}")
+    check_key(name, "a PLC", str(script))
     load(script)
     with HliClient(endpoint, machine, PLC_LEASE_MS) as client:
         ScriptClient(client, script, name, period_us, on_line).run()

@@ -10,6 +10,8 @@ from time import monotonic, sleep
 from types import FrameType
 from typing import Final, TypeVar, TypeVarTuple
 
+from hli_bench.base.errors import Stop
+
 A = TypeVarTuple("A")
 T = TypeVar("T")
 
@@ -21,8 +23,8 @@ DEBUGGERS: Final = ("bdb", "pdb", "pydevd", "_pydevd")
 """How modules begin that hold a script because somebody looks at it."""
 
 
-class Overdue(BaseException):
-    """Raised inside the call; no Exception, so that a script that catches those is ended all the same."""
+class Overdue(Stop):
+    """Raised inside the call that takes too long."""
 
 
 class Watchdog:

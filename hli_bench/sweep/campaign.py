@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, cast
 
+from hli_bench.base import paths
 from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.loading import data_file
 from hli_bench.bench.config import MachineConfig
@@ -85,11 +86,7 @@ class Campaign:
 
 def read(path: Path) -> Campaign:
     """Read and check a campaign. Raises InputError with file, line, key, value and what is allowed."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError("cannot be read as UTF-8 text", file=str(path)) from error
-    return _Reader(path, text).campaign()
+    return _Reader(path, paths.text(path)).campaign()
 
 
 class _Reader:
@@ -246,7 +243,7 @@ class _Reader:
         if not isinstance(name, str):
             raise self._error(key, f"{key}: {name!r} is not valid, expected the name of a file")
         for candidate in (self._path.parent / name, Path(name)):
-            if candidate.is_file():
+            if paths.is_file(candidate):
                 return candidate.resolve()
         try:
             return data_file(folder, name)
@@ -257,7 +254,7 @@ class _Reader:
     def _program(self, keys: Collection[str]) -> tuple[str, str]:
         """Return name and text of the program; its placeholders are the keys `program.*`."""
         path = self._file("program", "programs", self._tree["program"])
-        text = path.read_text(encoding="utf-8", errors="replace")
+        text = path.read_text(encoding="utf-8-sig", errors="replace")
         given = {key.removeprefix(PROGRAM) for key in keys if key.startswith(PROGRAM)}
         wanted = set(PLACEHOLDER.findall(text))
         for name in sorted(given - wanted):
@@ -273,14 +270,14 @@ class _Reader:
         if not isinstance(name, str):
             raise self._error("machine", f"machine: {name!r} is not valid, expected a name or a folder")
         beside = self._path.parent / name
-        if (beside / "machine.toml").is_file():
+        if paths.is_file(beside / "machine.toml"):
             return str(beside.resolve())
         try:
             machine_folder(name)
         except InputError as error:
             message = f"machine: {name!r} is neither a machine of the package nor a folder with machine.toml"
             raise self._error("machine", message) from error
-        return str(Path(name).resolve()) if Path(name).is_dir() else name
+        return str(Path(name).resolve()) if paths.is_folder(Path(name)) else name
 
     def _plc(self) -> tuple[str, ...] | None:
         names = self._tree.get("plc")

@@ -158,10 +158,10 @@ def _element(owner: ast.expr, key: ast.expr, keys: Collection[str]) -> tuple[Any
     text = ast.unparse(owner)
     try:
         at = ast.literal_eval(key)
-    except ValueError:
+    except (ValueError, TypeError):
         at = None
     if kind == SETTINGS:
-        if at not in keys:
+        if not isinstance(at, str) or at not in keys:
             raise ValueError(f"settings[{at!r}] is not a key of this campaign ({', '.join(sorted(keys))})")
         return float | int | str, lambda run: run.settings[at]
     origin = get_origin(kind)

@@ -22,19 +22,19 @@ P = TypeVar("P")
 
 def channel_of(values: Values) -> ChannelParams:
     """Return the parameters of the channel."""
-    kept = values.untouched("channel.")
+    kept = values.untouched("channel.", "lenient")
     return kept.channel if kept else _tree(values, ChannelParams, "channel")
 
 
 def params_of(values: Values, index: int, name: str) -> AxisParams:
     """Return the parameters of an axis."""
-    kept = values.untouched(f"axis.{name}.")
+    kept = values.untouched(f"axis.{name}.", "lenient")
     return kept.axes[index].params if kept else _tree(values, AxisParams, f"axis.{name}")
 
 
 def axis_of(values: Values, index: int, name: str, params: AxisParams) -> AxisConfig:
     """Return an axis with its drive."""
-    kept = values.untouched(f"axis.{name}.")
+    kept = values.untouched(f"axis.{name}.", "lenient")
     if kept:
         return kept.axes[index]
     node = values.value(f"axis.{name}.node_id")
@@ -71,7 +71,7 @@ def _tree(values: Values, cls: type[P], owner: str) -> P:
     """Return the parameters of the channel or an axis: list file, then machine.toml, then overrides."""
     name = values.value(f"{owner}.list")
     text = _list_file(values, owner, name) if name else ""
-    found = listed(cast("Any", cls), text, str(values.folder / name))
+    found = listed(cast("Any", cls), text, str(values.folder / name), lenient=values.value("lenient"))
     for finding in found.findings:
         values.note(finding.as_error(), finding.severity)
     places = dict(found.places)

@@ -37,9 +37,9 @@ class Listed(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def listed(cls: Any, text: str, file: str) -> Listed:
+def listed(cls: Any, text: str, file: str, *, lenient: bool) -> Listed:
     """Parse a list, once a process for the same text."""
-    parsed = parse_list(cls, text, file)
+    parsed = parse_list(cls, text, file, lenient=lenient)
     about_values = {finding.message for _, finding in check_values(cls, parsed.values)}
     places = {key: Given(value, file, parsed.lines[key]) for key, value in parsed.values.items()}
     findings = [finding for finding in parsed.findings if finding.message not in about_values]

@@ -37,7 +37,10 @@ class Error:
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """A measured value in mm (degrees); `source` is the value of P-AXIS-00516, `edge` POS or NEG."""
+    """A measured value in `unit`; `source` is the value of P-AXIS-00516, `edge` POS or NEG.
+
+    `acs_mm` and `pcs_mm` are older names of `acs` and `pcs`, which are degrees for rotary axes.
+    """
 
     axis: str
     block: str
@@ -46,6 +49,9 @@ class Measurement:
     pcs_mm: float
     dc_ns: int
     edge: str
+    acs: float
+    pcs: float
+    unit: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +65,14 @@ class NotMeasured:
 
 @dataclass(frozen=True, slots=True)
 class Homing:
-    """An axis that was homed: the reference position it took over, and how."""
+    """An axis that was homed: the position it took over, in `unit`, and how; `position_mm` is an older name."""
 
     axis: str
     referenced: bool
     position_mm: float
     method: str
+    position: float
+    unit: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,7 +149,8 @@ class Collector:
                     self.errors.append(error_of(record))
                 case Homed():
                     name = self._axes[record.axis].name
-                    self.homing.append(Homing(name, True, mm(record.position_tenth_um), record.method))
+                    position, unit = mm(record.position_tenth_um), self._axes[record.axis].unit
+                    self.homing.append(Homing(name, True, position, record.method, position, unit))
                 case MeasuredValue():
                     pass
 
@@ -169,6 +178,9 @@ def measurements(kernel: Kernel) -> list[Measurement]:
             pcs_mm=pcs_mm,
             dc_ns=int(value.dc_ns),
             edge=value.edge,
+            acs=mm(value.acs_tenth_um),
+            pcs=pcs_mm,
+            unit=kernel.setup.axes[value.axis].unit,
         )
         for value, pcs_mm in kernel.channel.measured
     ]

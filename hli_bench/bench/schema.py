@@ -2,9 +2,10 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 from enum import StrEnum
+from functools import lru_cache
 from typing import Final
 
 from hli_bench.base.time import DC_END, DC_EPOCH
@@ -144,6 +145,12 @@ GENERAL: Final = (
         doc="DC time at bench start",
     ),
     _integer("seed", 0, "seed of everything random", 0, 2**32 - 1),
+    Key(
+        path="lenient",
+        kind=Kind.BOOLEAN,
+        default=False,
+        doc="list files: parameters that the bench does not know and open brackets are remarked, no errors",
+    ),
     _text("channel.list", "", "channel list file of the folder"),
 )
 AXIS: Final = (
@@ -262,11 +269,25 @@ def pattern(key: Key) -> re.Pattern[str]:
     return re.compile(text)
 
 
+UNIT: Final = "_mm"
+"""Ends the names of positions, which are degrees for a rotary axis: each is taken without it too."""
+WITHOUT_UNIT: Final = tuple(
+    pattern(replace(key, path=key.path.removesuffix(UNIT))) for key in KEYS if key.path.endswith(UNIT)
+)
+
+
+@lru_cache(maxsize=4096)
+def canonical(path: str) -> str:
+    """Return the path under which a key stands in the schema: `plant.probe.A.face` is `plant.probe.A.face_mm`."""
+    return path + UNIT if any(expression.fullmatch(path) for expression in WITHOUT_UNIT) else path
+
+
 def lines() -> Iterator[str]:
     """Yield the schema of machine.toml, a line a key."""
     for key in KEYS:
         default = "" if key.default is None or key.default == "" else f" [{_shown(key.default)}]"
-        yield f"{key.path}: {key.expected()}{default}: {key.doc}"
+        also = f"; also without {UNIT}" if key.path.endswith(UNIT) else ""
+        yield f"{key.path}: {key.expected()}{default}: {key.doc}{also}"
     for path, doc in LIST_KEYS:
         yield f"{path}: {doc}"
 

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Final
 
 from hli_bench.base.errors import InputError
+from hli_bench.bench.schema import canonical
 from hli_bench.manual.lists import flatten
 from hli_bench.shells.texts import text_of
 
@@ -50,10 +51,15 @@ def toml_values(text: str, file: str) -> Mapping[str, Given]:
     Raises InputError with file and line.
     """
     lines = line_numbers(text)
-    tree = toml_tree(text, file)
-    return MappingProxyType(
-        {key: Given(value, file, line_of(lines, key)) for key, value in flatten(tree).items()}
-    )
+    values: dict[str, Given] = {}
+    for key, value in flatten(toml_tree(text, file)).items():
+        path, line = canonical(key), line_of(lines, key)
+        if path in values:
+            raise InputError(
+                f"{key}: the same as {path}, which is given in line {values[path].line}", file, line
+            )
+        values[path] = Given(value, file, line)
+    return MappingProxyType(values)
 
 
 def toml_tree(text: str, file: str) -> dict[str, object]:
@@ -132,7 +138,7 @@ def override(base: Mapping[str, Given], overrides: Mapping[str, object]) -> dict
         if path in WHOLE and isinstance(value, Sequence) and not isinstance(value, str):
             values = {old: given for old, given in values.items() if not old.startswith(f"{path}[")}
         for leaf, item in _leaves(path, value):
-            values[leaf] = Given(item, SET)
+            values[canonical(leaf)] = Given(item, SET)
     return values
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hli_bench.base.errors import EnvironmentLacks, InputError, NotEmulated
 from hli_bench.cli.console import say
-from hli_bench.cli.options import Commands, machine_name
+from hli_bench.cli.options import Commands, add_lenient, machine_name, settings_of
 
 if TYPE_CHECKING:
     from hli_bench.bench.config import MachineConfig
@@ -18,10 +18,14 @@ def add(commands: Commands) -> None:
     parser = commands.add_parser("machine", help="check a machine folder; print what may stand in one")
     actions = parser.add_subparsers(dest="action", required=True, title="commands")
     check = actions.add_parser(
-        "check", help="check a machine folder: machine.toml, lists, drives, PLC scripts"
+        "check",
+        help="check a machine folder: machine.toml, lists, drives, PLC scripts",
+        description="Checks a machine folder as `run` would take it. Drive models are imported and PLC scripts are "
+        "loaded: what stands at their top level runs. Nothing is started.",
     )
     check.add_argument("machine", metavar="DIR", help="a folder, or the name of a machine of the package")
     check.add_argument("--set", metavar="KEY=VALUE", action="append", help="checked as `run` would take it")
+    add_lenient(check)
     check.add_argument(
         "--modbus", action="store_true", help="not built yet: prints the Modbus map of the machine"
     )
@@ -69,9 +73,8 @@ def check_machine(arguments: argparse.Namespace) -> int:
     if arguments.modbus:
         raise NotEmulated("machine check --modbus is not built yet")
     from hli_bench.bench.folder import load
-    from hli_bench.bench.sources import parse_set
 
-    config = load(machine_name(arguments.machine, ""), parse_set(arguments.set or []))
+    config = load(machine_name(arguments.machine, ""), settings_of(arguments))
     check_named(config)
     for note in config.notes:
         say(f"{note.place()}: {note.severity}: {note.message}")

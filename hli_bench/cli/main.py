@@ -22,6 +22,7 @@ from hli_bench.base.loading import version
 from hli_bench.cli import (
     doctor,
     drive,
+    errors,
     hli,
     machine,
     params,
@@ -65,7 +66,22 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = top.add_subparsers(dest="command", required=True, title="commands")
-    for module in (run, serve, plc, hli, state, reset, params, drive, machine, trace, sweep, unbuilt, doctor):
+    for module in (
+        run,
+        serve,
+        plc,
+        hli,
+        state,
+        reset,
+        params,
+        errors,
+        drive,
+        machine,
+        trace,
+        sweep,
+        unbuilt,
+        doctor,
+    ):
         module.add(commands)
     return top
 

@@ -49,6 +49,7 @@ def add_bench(parser: argparse.ArgumentParser, *, pace: str, zenoh: str | None) 
         action="append",
         help="overrides a key of the machine folder, e.g. plant.probe.Z.face_mm=100; repeatable",
     )
+    add_lenient(bench)
     bench.add_argument(
         "--plc",
         metavar="SCRIPT",
@@ -80,6 +81,17 @@ def add_bench(parser: argparse.ArgumentParser, *, pace: str, zenoh: str | None) 
     )
     bench.add_argument("--modbus", metavar="HOST:PORT", help="not built yet: Modbus TCP")
     parser.set_defaults(default_pace=pace, default_zenoh=zenoh)
+
+
+def add_lenient(parser: argparse._ActionsContainer) -> None:
+    """Declare the option for lists of real machines."""
+    parser.add_argument(
+        "--lenient",
+        action="store_true",
+        default=None,
+        help="list files: pass over parameters that the bench does not know and brackets that never close, "
+        "and say in one remark which",
+    )
 
 
 def add_connect(parser: argparse.ArgumentParser) -> None:
@@ -115,8 +127,6 @@ def endpoint(text: str) -> str:
 
 def bench_options(arguments: argparse.Namespace) -> BenchOptions:
     """Return what the options say. Raises InputError, and NotEmulated for what is not built."""
-    from hli_bench.bench.sources import parse_set
-
     if arguments.modbus is not None:
         raise NotEmulated("--modbus: Modbus TCP is not built yet")
     can = arguments.can or "inproc"
@@ -127,13 +137,21 @@ def bench_options(arguments: argparse.Namespace) -> BenchOptions:
         raise InputError(f"only with --pace real, the pace is {pace}", file="--realtime")
     return BenchOptions(
         machine=machine_name(arguments.machine or DEFAULT_MACHINE),
-        settings=parse_set(arguments.set or []),
+        settings=settings_of(arguments),
         plc=None if arguments.plc is None else plc_scripts(arguments.plc),
         pace=pace,
         realtime=bool(arguments.realtime),
         can=can,
         zenoh=arguments.zenoh or arguments.default_zenoh,
     )
+
+
+def settings_of(arguments: argparse.Namespace) -> dict[str, object]:
+    """Return the overrides that `--set` and `--lenient` give. Raises InputError."""
+    from hli_bench.bench.sources import parse_set
+
+    settings = parse_set(arguments.set or [])
+    return settings | {"lenient": True} if arguments.lenient else settings
 
 
 def machine_name(text: str, place: str = "--machine") -> str:

@@ -1,7 +1,7 @@
 """`hli-bench params show / check`: the sheet of a parameter, and what is wrong with a list file."""
 
 import argparse
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from enum import IntEnum, IntFlag
 from pathlib import Path
 from typing import Any, Final
@@ -10,7 +10,7 @@ from hli_bench.base import paths
 from hli_bench.base.errors import InputError
 from hli_bench.cli import tables
 from hli_bench.cli.console import say, tell
-from hli_bench.cli.options import Commands
+from hli_bench.cli.options import Commands, add_lenient
 from hli_bench.manual.axis import AxisParams
 from hli_bench.manual.catalogue import Catalogue, catalogue
 from hli_bench.manual.channel import ChannelParams
@@ -37,6 +37,9 @@ def add(commands: Commands) -> None:
         "names", metavar="ID-OR-PATH", nargs="+", help="P-AXIS-00516, P-CHAN-00057 or kenngr.measure.signal"
     )
     show.set_defaults(execute=show_sheets)
+    search = actions.add_parser("find", help="list the parameters whose sheet holds all words")
+    search.add_argument("words", metavar="WORD", nargs="+")
+    search.set_defaults(execute=find_sheets)
     check = actions.add_parser(
         "check",
         help="check a list file",
@@ -44,6 +47,7 @@ def add(commands: Commands) -> None:
     )
     check.add_argument("files", metavar="FILE.lis", nargs="+")
     check.add_argument("--kind", choices=tuple(KINDS), help="what the list is (default: by its content)")
+    add_lenient(check)
     check.set_defaults(execute=check_lists)
 
 
@@ -60,6 +64,25 @@ def show_sheets(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def find_sheets(arguments: argparse.Namespace) -> int:
+    """Print a line for each parameter that holds the words. Raises InputError when none does."""
+    found = list(_holding([word.lower() for word in arguments.words]))
+    if not found:
+        raise InputError(f"no parameter holds {' and '.join(arguments.words)}", file="params find")
+    for line in tables.lines(found):
+        say(line)
+    return 0
+
+
+def _holding(words: Sequence[str]) -> Iterator[tuple[str, str, str]]:
+    """Yield number, path and meaning of the parameters whose sheets hold all words, in small letters."""
+    for kind, cls in KINDS.items():
+        for entry in catalogue(cls).entries:
+            text = " ".join(text for _, text in sheet_rows(kind, entry)).lower()
+            if all(word in text for word in words):
+                yield entry.sheet.number or "-", entry.path, entry.sheet.doc
+
+
 def find(name: str) -> tuple[str, Entry]:
     """Return the kind of list and the parameter of a number or path. Raises InputError with the nearest."""
     known = {kind: catalogue(cls) for kind, cls in KINDS.items()}
@@ -69,6 +92,12 @@ def find(name: str) -> tuple[str, Entry]:
             return kind, entry
     if name.upper().startswith("P-"):
         raise InputError(f"{name}: unknown parameter, expected P-AXIS-nnnnn, P-CHAN-nnnnn or a list path")
+    if name.isdecimal():
+        raise InputError(f"{name}: no parameter; `hli-bench errors show {name}` looks among the messages")
+    if next(_holding([name.lower()]), None):
+        raise InputError(
+            f"{name}: no parameter of that name; `hli-bench params find {name}` lists those that hold it"
+        )
     reasons = [reason for found in known.values() if (reason := _unknown(found, name))]
     raise InputError(next((reason for reason in reasons if "did you mean" in reason), reasons[0]))
 
@@ -149,19 +178,22 @@ def _shown(value: object) -> str:
 
 def check_lists(arguments: argparse.Namespace) -> int:
     """Print the findings of all files; 2 when one of them is not accepted."""
-    return max([check_list(Path(file), arguments.kind) for file in arguments.files])
+    return max(
+        [check_list(Path(file), arguments.kind, lenient=bool(arguments.lenient)) for file in arguments.files]
+    )
 
 
-def check_list(path: Path, kind: str | None) -> int:
+def check_list(path: Path, kind: str | None, *, lenient: bool) -> int:
     """Print the findings of one list and what it is; errors go to standard error. Raises InputError."""
     text = paths.text(path)
     kind = kind or kind_of(text)
     cls = KINDS[kind]
-    parsed = parse_list(cls, text, str(path))
+    parsed = parse_list(cls, text, str(path), lenient=lenient)
     errors = [finding for finding in parsed.findings if finding.severity is Severity.ERROR]
     for finding in sorted(parsed.findings, key=lambda one: one.line):
         show = tell if finding.severity is Severity.ERROR else say
-        show(f"{path}:{finding.line}: {finding.severity}: {finding.message}")
+        place = f"{path}:{finding.line}" if finding.line else str(path)
+        show(f"{place}: {finding.severity}: {finding.message}")
     if errors:
         return BAD
     for refused, text in refusals(cls, parsed.values):

@@ -53,6 +53,7 @@ OF_A_MACHINE: Final = (".toml", ".lis", ".py", ".eds")
 OF_AN_OWN_BENCH: Final = (
     "machine",
     "set",
+    "lenient",
     "plc",
     "pace",
     "realtime",

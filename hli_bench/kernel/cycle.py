@@ -159,8 +159,8 @@ class Kernel:
             self.core.report(hli_errors.PLC_STOPPED, self.channel.source, name)
 
     def position_mm(self, axis: AxisIndex) -> float:
-        """Return the actual position of an axis in mm (degrees)."""
-        return mm(float(self.core.row(axis)["actual"]))
+        """Return the actual position of an axis in mm (degrees), in whole 0.1 um as the HLI shows it."""
+        return mm(round(float(self.core.row(axis)["actual"])))
 
     def holding(self) -> list[str]:
         """Return the elements that make commanded motion stand."""

@@ -21,6 +21,11 @@ class AxisSetup:
     params: AxisParams
 
     @property
+    def unit(self) -> str:
+        """Unit of its positions in results: mm or deg."""
+        return "mm" if self.kind == "T" else "deg"
+
+    @property
     def increments_per_unit(self) -> float:
         """Encoder increments per 0.1 um (0.0001 degree): P-AXIS-00234 / P-AXIS-00233."""
         gear = self.params.getriebe[0]

@@ -81,27 +81,40 @@ class ParsedList(NamedTuple):
     findings: list[Finding]
     lines: dict[str, int]
     """Line of each path."""
+    ignored: list[str]
+    """What a lenient reading passed over, with its line."""
 
 
-def parse_axis_list(text: str, file: str = "") -> ParsedList:
+def parse_axis_list(text: str, file: str = "", *, lenient: bool = False) -> ParsedList:
     """Parse and check an axis list; never raises for what the list says."""
-    return parse_list(AxisParams, text, file)
+    return parse_list(AxisParams, text, file, lenient=lenient)
 
 
-def parse_channel_list(text: str, file: str = "") -> ParsedList:
+def parse_channel_list(text: str, file: str = "", *, lenient: bool = False) -> ParsedList:
     """Parse and check a channel list; never raises for what the list says."""
-    return parse_list(ChannelParams, text, file)
+    return parse_list(ChannelParams, text, file, lenient=lenient)
 
 
-def parse_list(cls: type[Any], text: str, file: str = "") -> ParsedList:
-    """Parse a list for the tree `cls`: all values that are right, and all findings."""
+def parse_list(cls: type[Any], text: str, file: str = "", *, lenient: bool = False) -> ParsedList:
+    """Parse a list for the tree `cls`: all values that are right, and all findings.
+
+    A `lenient` reading passes over parameters that the bench does not know and over remarks that begin with a bracket
+    which never closes, as lists of real machines have them; what it passed over is one warning. Values of parameters
+    that it knows must be right all the same: a default in the place of a wrong value would be a different machine.
+    """
     known = catalogue(cls)
-    parsed = ParsedList({}, [], {})
+    parsed = ParsedList({}, [], {}, [])
     rows = _rows(text)
     for number, path, column, raw in rows:
         if path.lower() in END:
             parsed.findings.extend(_behind_end(rows, number, file))
             break
+        if lenient and known.find(path) is None:
+            parsed.ignored.append(f"{path} (line {number}, unknown)")
+            continue
+        value, remark = _open_remark(raw) if lenient else (raw, "")
+        if remark:
+            parsed.ignored.append(f"{remark!r} (line {number}, behind the value)")
         try:
             located = known.locate(path)
             if located.path in parsed.lines:
@@ -109,11 +122,17 @@ def parse_list(cls: type[Any], text: str, file: str = "") -> ParsedList:
                     f"{located.path}: given twice, lines {parsed.lines[located.path]} and {number}"
                 )
             parsed.lines[located.path] = number
-            if raw is None:
+            if value is None and not located.entry.takes_empty:
                 raise InputError(f"{located.path}: the value is missing")
-            parsed.values[located.path] = convert(located.entry, located.path, raw)
+            parsed.values[located.path] = convert(located.entry, located.path, value or "")
         except InputError as error:
             parsed.findings.append(Finding(Severity.ERROR, error.message, file, number, column))
+    if parsed.ignored:
+        count = len(parsed.ignored)
+        message = (
+            f"lenient: {count} {'thing' if count == 1 else 'things'} ignored: {'; '.join(parsed.ignored)}"
+        )
+        parsed.findings.append(Finding(Severity.WARNING, message, file))
     parsed.findings.extend(_placed(check_values(cls, parsed.values), parsed.lines, file))
     return parsed
 
@@ -145,6 +164,14 @@ def _value_text(rest: str) -> str | None:
     if rest.startswith('"') and '"' in rest[1:]:
         return rest[: rest.index('"', 1) + 1]
     return re.sub(r"\s*\(.*\)$", "", rest) or None
+
+
+def _open_remark(value: str | None) -> tuple[str | None, str]:
+    """Return a value without the remark whose bracket never closes, and that remark; a quoted text has none."""
+    if value is None or value.startswith('"'):
+        return value, ""
+    before, bracket, behind = value.partition("(")
+    return before.rstrip() or None, bracket + behind
 
 
 def _placed(found: Sequence[tuple[str, Finding]], lines: Mapping[str, int], file: str) -> Iterator[Finding]:

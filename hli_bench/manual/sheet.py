@@ -144,6 +144,11 @@ class Entry:
     sizes: tuple[int, ...] = ()
     """How many elements each index of the path may have."""
 
+    @property
+    def takes_empty(self) -> bool:
+        """Whether a line without a value gives an empty text, as lists print it."""
+        return self.python_type is str and (not self.sheet.choices or "" in self.sheet.choices)
+
 
 def axis_page(page: int) -> str:
     """Return the source text of a page of the public TF5200 axis parameter book."""

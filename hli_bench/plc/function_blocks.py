@@ -6,13 +6,31 @@ its first call with CLK = FALSE.
 """
 # ruff: noqa: N801, N803, FBT001 - names and inputs of the blocks are those of the standard
 
+from collections.abc import Callable
 from contextvars import ContextVar
-from typing import Final
+from functools import wraps
+from typing import Any, Final, ParamSpec, TypeVar
 
 from hli_bench.base.time import NS_PER_MS, Ns
 
 TASK_TIME: Final[ContextVar[Ns]] = ContextVar("TASK_TIME")
 """DC time of the task cycle that is running."""
+
+
+TC2_STANDARD: Final = {"SET1": "S1", "RESET": "R", "SET": "S", "RESET1": "R1"}
+"""Inputs of SR, RS and CTU as the PLC library Tc2_Standard names them, by which ported code calls them."""
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def both_names(call: Callable[P, R]) -> Callable[..., R]:
+    """Let a block be called with the names of its inputs in IEC 61131-3 or in Tc2_Standard."""
+
+    @wraps(call)
+    def translated(*args: Any, **inputs: Any) -> R:
+        return call(*args, **{TC2_STANDARD.get(name, name): value for name, value in inputs.items()})
+
+    return translated
 
 
 class R_TRIG:
@@ -130,6 +148,7 @@ class SR:
     def __init__(self) -> None:
         self.Q1 = False
 
+    @both_names
     def __call__(self, S1: bool, R: bool) -> bool:
         """Run the block once; return its output."""
         self.Q1 = bool(S1) or (not R and self.Q1)
@@ -144,6 +163,7 @@ class RS:
     def __init__(self) -> None:
         self.Q1 = False
 
+    @both_names
     def __call__(self, S: bool, R1: bool) -> bool:
         """Run the block once; return its output."""
         self.Q1 = not R1 and (bool(S) or self.Q1)
@@ -160,6 +180,7 @@ class CTU:
         self.CV = 0
         self._edge = R_TRIG()
 
+    @both_names
     def __call__(self, CU: bool, R: bool, PV: int) -> bool:
         """Run the block once; return its output."""
         rising = self._edge(CU)

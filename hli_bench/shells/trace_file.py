@@ -27,7 +27,8 @@ from zstandard import ZstdError
 from hli_bench.base.errors import InputError
 from hli_bench.base.ids import NodeId
 from hli_bench.base.time import Ns
-from hli_bench.kernel.records import Emitted
+from hli_bench.base.units import mm
+from hli_bench.kernel.records import Emitted, Homed, MeasuredValue
 from hli_bench.kernel.setup import KernelSetup
 from hli_bench.laws.rows import LOG, LOG_CYCLES, Rows
 from hli_bench.protocols.hli.access import Refusal
@@ -148,6 +149,7 @@ class TraceFile:
         """`log` is the kernel's ring. Raises InputError when the file cannot be written."""
         self._cycle_ns = setup.cycle_ns
         self._axes = len(setup.axes)
+        self._units = [axis.unit for axis in setup.axes]
         self._buffer = CycleBuffer(log, LOG_CYCLES + BLOCK_CYCLES)
         self._waiting: list[tuple[Ns, int, bytes]] = []
         self._file = RecordFile(path, on_note)
@@ -201,8 +203,18 @@ class TraceFile:
     def emitted(self, cycle: int, records: Sequence[Emitted]) -> None:
         """Take what the kernel emitted."""
         for record in records:
-            value = {"kind": type(record).__name__, **asdict(record)}
+            value = {"kind": type(record).__name__, **asdict(record), **self._in_units(record)}
             self._event(Ns(cycle * self._cycle_ns), "cnc", _json(value))
+
+    def _in_units(self, record: Emitted) -> dict[str, Any]:
+        """Return the position of a record in the unit of its axis; `tenth_um` is 0.0001 degree if that is rotary."""
+        match record:
+            case MeasuredValue(axis=axis, acs_tenth_um=position):
+                return {"acs": mm(position), "unit": self._units[axis]}
+            case Homed(axis=axis, position_tenth_um=position):
+                return {"position": mm(position), "unit": self._units[axis]}
+            case _:
+                return {}
 
     def commands(self, commands: Commands) -> None:
         """Take what a PLC wrote."""

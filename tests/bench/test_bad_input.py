@@ -181,7 +181,7 @@ def test_a_drive_model_is_the_same_to_run_and_to_machine_check(
     [
         (["fault.0.value=2"], "fault[0].value: 2 is no level of a stuck probe, 0 or 1 expected"),
         (["fault.0.value=-1"], "fault[0].value: -1 is no level of a stuck probe, 0 or 1 expected"),
-        (["fault.0.when=x", "axis.Z.start=3"], "axis.Z.start: "),
+        (["fault.0.when=x", "axis.Z.begin=3"], "axis.Z.begin: "),
         (["fault.0.when=x"], "NotEmulated: --set: fault[0].when: faults at a condition"),
         (["dc_epoch=2400-01-01"], "dc_epoch: "),
     ],

@@ -174,7 +174,7 @@ def test_wrong_overrides(overrides: dict[str, object], message: str) -> None:
 def test_everything_wrong_is_named_with_file_and_line(tmp_path: Path) -> None:
     folder = _machine(
         tmp_path,
-        '# a machine\ncycle_us = "fast"\nchannel.list = "c.lis"\n\n[axis.X]\nlist = "x.lis"\nstart = 3\n'
+        '# a machine\ncycle_us = "fast"\nchannel.list = "c.lis"\n\n[axis.X]\nlist = "x.lis"\nbegin = 3\n'
         "\n[[plc]]\n\n[[plc]]\nperiod_us = 0\n",
         c="messtyp 8\n",
         x="kopf.achs_nr 1\nkenngr.messachs 1\ngetriebe[0].vb_reflow 5000\ngetriebe[0].vb_refmax 4000\n",

@@ -12,11 +12,12 @@ from hli_bench.cli.main import main, parser
 
 COMMANDS = [
     *("run", "serve", "plc", "hli", "state", "reset", "params"),
-    *("drive", "machine", "inject", "clear", "sweep", "scope", "trace", "doctor"),
+    *("errors", "drive", "machine", "inject", "clear", "sweep", "scope", "trace", "doctor"),
 ]
 ACTIONS = {
     "hli": "{ls,get,set,watch}",
-    "params": "{show,check}",
+    "params": "{show,find,check}",
+    "errors": "{show,find}",
     "drive": "{show,check}",
     "machine": "{check,schema,copy}",
     "trace": "{show,diff,export}",

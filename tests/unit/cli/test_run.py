@@ -21,7 +21,7 @@ RESULT_KEYS = {
 KEYS_OF = {
     "messages": {"block", "text"},
     "errors": {"id", "severity", "axis", "block", "text", "values"},
-    "measurements": {"axis", "block", "source", "acs_mm", "pcs_mm", "dc_ns", "edge"},
+    "measurements": {"axis", "block", "source", "acs_mm", "pcs_mm", "dc_ns", "edge", "acs", "pcs", "unit"},
 }
 MEASURED = ["V.A.MESS.Z=100.000000", "V.A.MOFFS.Z=80.000000", "V.A.MERF.Z=1", "V.A.ABS.Z=110.000000"]
 NEAR = """N10 #MEAS MODE[1]

@@ -105,3 +105,21 @@ def test_ctu_counts_rising_edges_and_reset_wins() -> None:
     assert [(counter(CU=cu, R=r, PV=2), counter.CV) for cu, r in levels] == [
         (False, 1), (False, 1), (False, 1), (True, 2), (False, 0), (False, 0), (False, 0),
     ]  # fmt: skip
+
+
+def test_blocks_take_the_names_of_tc2_standard_too() -> None:
+    for first, second in ((SR(), SR()), (RS(), RS())):
+        names = (
+            ({"S1": True, "R": True}, {"SET1": True, "RESET": True})
+            if isinstance(first, SR)
+            else (
+                {"S": True, "R1": True},
+                {"SET": True, "RESET1": True},
+            )
+        )
+        assert first(**names[0]) is second(**names[1]) is isinstance(first, SR)
+    counter = CTU()
+    assert counter(CU=True, RESET=False, PV=1)
+    assert not counter(CU=True, RESET=True, PV=1)
+    with pytest.raises(TypeError, match="RESTE"):
+        counter(CU=True, RESTE=False, PV=1)

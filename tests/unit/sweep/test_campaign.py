@@ -91,7 +91,7 @@ def test_a_program_without_keys_is_left_as_it_is():
         ("plant.probe.Z.face_mm", "plant.probe.Q.face_mm", 10, "'Q' is not an axis"),
         ('"seed" = {', '"plant.probe.Z.material" = {', 11, "stands twice in this campaign"),
         ("integers = [0, 9]", "integers = [-9, 9]", 11, "seed: -"),
-        ('error_um = "measurements.0.acs_mm"', 'error_um = "measurements.0.acs"', 13, "'acs' is not one of"),
+        ('error_um = "measurements.0.acs_mm"', 'error_um = "measurements.0.mcs"', 13, "'mcs' is not one of"),
         ("error_um =", "cycles =", 13, "cannot name a metric"),
         ("[metrics]", '[report]\nby = "cycle_us"\n[metrics]', 13, "report.by: 'cycle_us' is not one of"),
         (

@@ -10,8 +10,8 @@ RESULT = Result(
     errors=[Error(50886, "error", "Z", "N10", "text", {"speed": 7, "word": "x"})],
     variables={"V.A.MESS.Z": 100.5},
     measurements=[
-        Measurement("Z", "N1", "PLC", 100.0, 99.0, 12, "POS"),
-        Measurement("Z", "N2", "PLC", 103.0, 99.0, 15, "POS"),
+        Measurement("Z", "N1", "PLC", 100.0, 99.0, 12, "POS", 100.0, 99.0, "mm"),
+        Measurement("Z", "N2", "PLC", 103.0, 99.0, 15, "POS", 103.0, 99.0, "mm"),
     ],
     homing=[],
     sim_s=1.5,
@@ -63,7 +63,7 @@ def test_what_a_run_does_not_have_is_empty(text):
 @pytest.mark.parametrize(
     ("text", "named"),
     [
-        ("measurements.0.acs", "acs_mm, pcs_mm"),
+        ("measurements.0.mcs", "acs_mm, pcs_mm"),
         ("measurement.0.acs_mm", "measurements"),
         ("measurements.acs_mm", "a number in brackets"),
         ("variables.A", "a quoted name in brackets"),

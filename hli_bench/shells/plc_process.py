@@ -16,7 +16,7 @@ import zenoh
 
 from hli_bench.base import garbage
 from hli_bench.base.endpoints import check_key
-from hli_bench.base.errors import BenchError
+from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.loading import child_command
 from hli_bench.plc import Task, load, period_of
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image

@@ -33,8 +33,8 @@ from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 if TYPE_CHECKING:
     from hli_bench.bench.door import HliDoor
 
-START_UP_CYCLES: Final = 2000
-"""Cycles within which all drives must have come into operation."""
+START_UP_CYCLES: Final = 10_000
+"""Cycles within which all drives must be in operation, or have said why not."""
 WITHOUT_MOTION_PACED: Final = 50
 """Blocks without motion in a row for which a cycle passes in real pace: they take half a ms (decided here)."""
 FOREVER: Final = 1 << 62
@@ -112,6 +112,7 @@ class Bench:
             self._standstill = Standstill(self.kernel, on_note)
             self._plcs = plc_configs(self.config, plc)
             self._up = self._closed = False
+            self._foreign_told = False
             self._lost: dict[str, str] = {}
             """What there is to say of PLCs whose scripts did not return, to be said in every result."""
             self.interrupted: Result | None = None
@@ -141,8 +142,10 @@ class Bench:
         if self.engine.cycle:
             raise BenchError("this bench has failed to start; make a new one")
         self.engine.power_on()
-        if not self._advance(lambda: self.kernel.ready, START_UP_CYCLES):
-            raise BenchError(f"not all drives came into operation within {START_UP_CYCLES} cycles")
+        drives = self.kernel.drives
+        self._advance(lambda: drives.settled, START_UP_CYCLES)
+        if not drives.ready:
+            raise BenchError(f"drives did not come into operation: {', '.join(drives.out())}")
         self._attach_plcs()
         self._up = True
         if self._pace is not None:
@@ -169,7 +172,7 @@ class Bench:
         self.start_up()
         collector = Collector(self.kernel.setup.axes)
         self._tap.collector = collector
-        first = self.engine.cycle
+        first, syncs = self.engine.cycle, self.engine.foreign_syncs
         self._standstill.begin(first)
         last = FOREVER if limit_s is None else first + self._cycles(limit_s)
         if self._pace is not None:
@@ -195,7 +198,7 @@ class Bench:
             if self._door is not None:
                 self._door.state_changed()
         status = collector.status(completed=self.kernel.channel.completed) if ended else "aborted"
-        result = self._result(name, status, collector, first, watch, holding)
+        result = self._result(name, status, collector, first, syncs, watch, holding)
         if stopped is not None:
             self.interrupted = result
             raise stopped
@@ -213,10 +216,14 @@ class Bench:
         status: str,
         collector: Collector,
         first: int,
+        syncs: int,
         watch: Stopwatch,
         holding: Sequence[str],
     ) -> Result:
-        """Return the result of a program that began behind cycle `first`; what `holding` names held its motion."""
+        """Return the result of a program that began behind cycle `first`; what `holding` names held its motion.
+
+        `syncs` SYNC frames had come from others when it began.
+        """
         cycles = self.engine.cycle - first
         return Result(
             program=name,
@@ -235,6 +242,7 @@ class Bench:
                 *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
                 *self._without_plc(),
                 *remarks(self.config, self.kernel.channel.unmeasured),
+                *self._foreign_syncs(self.engine.foreign_syncs - syncs),
             ),
             lateness=self._pace.take_part() if self._pace else None,
         )
@@ -293,6 +301,10 @@ class Bench:
             self.engine.step(self.engine.cycle + 1 if each else limit)
             if self.engine.cycle >= self._standstill.due:
                 self._standstill.look(self.engine.cycle)
+            if self.engine.foreign_syncs and not self._foreign_told:
+                self._foreign_told = True
+                for note in self._foreign_syncs(self.engine.foreign_syncs):
+                    self._on_note(f"{note}; they are counted in `state` and in results")
             if self._door is not None:
                 self._door.after_step()
         return True
@@ -343,6 +355,11 @@ class Bench:
             server, self.engine, lockstep=lockstep, state=self.state, on_note=self._on_note
         )
         return self._tap.door
+
+    def _foreign_syncs(self, count: int) -> Iterator[str]:
+        """Yield how many SYNC frames of others the drives have left out."""
+        if count:
+            yield f"{count} foreign SYNC on the CAN bus: the drives act on that of the CNC only"
 
     def _without_plc(self) -> Iterator[str]:
         """Yield what there is to say of the bench's own PLCs that take part no more."""

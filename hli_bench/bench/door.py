@@ -29,7 +29,7 @@ ANSWERS: Final = 1000
 """So many clients wait at most to hear that something has taken effect."""
 TRACEBACK_LINES: Final = -10
 """The last of them say where it was."""
-RESET_CYCLES: Final = 2000
+RESET_CYCLES: Final = 10_000
 """Cycles within which the drives must be back after a reset, else it is answered all the same."""
 
 
@@ -208,9 +208,10 @@ class HliDoor:
         while self._written and self._written[0][0] <= cycle:
             request = self._written.pop(0)[1]
             request.reply(self._remark(request))
-        ready = self._engine.kernel.ready
-        while self._resets and cycle > self._resets[0][0] + (0 if ready else RESET_CYCLES):
-            out = "" if ready else f"still out of operation: {', '.join(self._engine.kernel.out())}"
+        drives = self._engine.kernel.drives
+        while self._resets and cycle > self._resets[0][0] + (0 if drives.settled else RESET_CYCLES):
+            names = drives.out()
+            out = f"still out of operation: {', '.join(names)}" if names else ""
             self._resets.pop(0)[1].reply(json.dumps({"note": out}) if out else "")
             self.state_changed()
 

@@ -7,6 +7,7 @@ else as frames. Over a CAN interface frames pass in every cycle, and SYNC is wha
 
 import json
 import sys
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,7 +15,7 @@ import numpy as np
 from hli_bench.base.errors import EnvironmentLacks
 from hli_bench.bench import build, telegraph
 from hli_bench.bench.folder import load
-from hli_bench.bench.telegraph import Numbers, Order
+from hli_bench.bench.telegraph import Numbers, Order, Reply
 from hli_bench.laws.native import bind
 from hli_bench.laws.rows import AXIS, Rows
 from hli_bench.laws.stride import exchange_in, exchange_out
@@ -39,6 +40,8 @@ class Drives:
         self._moved = 0
         """The cycle to whose SYNC the machine has moved."""
         self._raised = False
+        self._foreign: list[CanFrame] = []
+        """What others have sent since the last answer."""
 
     def run(self) -> None:
         """Work until the kernel's process closes the pipe."""
@@ -52,13 +55,15 @@ class Drives:
                 self._answer(cycle, self._side.power_on())
                 continue
             if kind is Order.CYCLE:
-                inbox = telegraph.read_frames(body) if self._bus is None else self._from_bus()
+                inbox = telegraph.read_frames(body)
+                if self._bus is not None:
+                    inbox = self._from_bus(inbox)
                 self._advance(cycle)
                 self._answer(cycle, self._side.telegrams(cycle, inbox))
             elif self._exchange(kind, cycle, body):
                 self._answer(cycle, numbers=self._numbers.actual())
             else:
-                self._pipe.send(telegraph.reply(telegraph.FAULT))
+                self._pipe.send(telegraph.reply(Reply(telegraph.FAULT)))
                 continue
             if self._bus is None:
                 # The targets for the next cycle are known since the last SYNC: move on while the kernel works.
@@ -87,15 +92,31 @@ class Drives:
             self._exchange_out()
         return True
 
-    def _from_bus(self) -> list[CanFrame]:
-        """Take frames until the SYNC that belongs to this cycle. Raises EnvironmentLacks when it does not come."""
+    def _from_bus(self, announced: Sequence[CanFrame]) -> list[CanFrame]:
+        """Take frames until what the CNC has announced is there, and its SYNC. Raises EnvironmentLacks when it is not.
+
+        What else is there came from others: it reaches the drives as well, but for a SYNC. Somebody's SYNC would end
+        the cycle early, for this process and for every cycle that follows.
+        """
         assert self._bus is not None
+        waiting = Counter((*announced, SYNC))
         inbox: list[CanFrame] = []
-        while (frame := self._bus.receive()) is not None:
-            if frame.cob_id == SYNC.cob_id:
-                return inbox
+        while waiting.total():
+            frame = self._bus.receive()
+            if frame is None:
+                raise EnvironmentLacks("frames of the CNC were lost on the CAN bus, or its SYNC")
+            self._sort(frame, waiting, inbox)
+        while (frame := self._bus.receive_now()) is not None:
+            self._sort(frame, waiting, inbox)
+        return inbox
+
+    def _sort(self, frame: CanFrame, waiting: Counter[CanFrame], inbox: list[CanFrame]) -> None:
+        if waiting[frame]:
+            waiting[frame] -= 1
+        else:
+            self._foreign.append(frame)
+        if frame.cob_id != SYNC.cob_id:
             inbox.append(frame)
-        raise EnvironmentLacks("the SYNC of the CNC was lost on the CAN bus")
 
     def _answer(self, cycle: int, frames: Sequence[CanFrame] = (), *, numbers: bytes = b"") -> None:
         """Send numbers or frames (a CAN bus carries them itself), what is due by time, the edges of this cycle."""
@@ -109,7 +130,9 @@ class Drives:
             for frame in frames:
                 self._bus.send(frame)
         edges = telegraph.edges(side.take_edges(), side.signals)
-        self._pipe.send(telegraph.reply(state, numbers, telegraph.frames(frames), due, edges))
+        foreign, self._foreign = telegraph.frames(self._foreign), []
+        packed = telegraph.frames(frames)
+        self._pipe.send(telegraph.reply(Reply(state, numbers, packed, due, foreign, edges)))
 
 
 def main(pipe: Pipe, arguments: Sequence[str]) -> None:

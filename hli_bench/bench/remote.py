@@ -12,7 +12,7 @@ import numpy as np
 from hli_bench.base.errors import EnvironmentLacks, InputError, NotEmulated
 from hli_bench.bench import telegraph
 from hli_bench.bench.config import MachineConfig
-from hli_bench.bench.telegraph import Numbers, Order
+from hli_bench.bench.telegraph import Numbers, Order, Reply
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.laws.rows import MachineRows, Rows
 from hli_bench.plant.build import signal_names
@@ -55,7 +55,7 @@ class RemoteEngine(Engine):
         """Return that numbers or frames pass in the next cycle; no cycle is strided over."""
         if self._machine.ahead is not None:
             return WORDS
-        return FRAMES if self._orders or not self._machine.quiet(first) else WORDS
+        return FRAMES if self.frames_wait or not self._machine.quiet(first) else WORDS
 
     def _exchange(self, cycle: int) -> None:
         """Pass numbers; frames after all when a drive has raised a fault."""
@@ -67,7 +67,7 @@ class RemoteEngine(Engine):
     def _complete(self, first: int, count: int) -> None:
         """Complete a cycle; when no more than targets pass in the next one, they are sent at once."""
         super()._complete(first, count)
-        if not self._orders and not self._new_words and self._machine.quiet(self.cycle + 1):
+        if not self.frames_wait and not self._new_words and self._machine.quiet(self.cycle + 1):
             self._machine.send_ahead(self.cycle + 1)
 
 
@@ -114,6 +114,7 @@ class RemoteMachine:
         self._quiet = False
         self._numbers = Numbers(axis)
         self._due: list[CanFrame] = []
+        self._foreign: list[CanFrame] = []
         self.terminal_layouts: Sequence[TerminalLayout] = [
             type_of(settings).layout(settings) for settings in config.terminals
         ]
@@ -137,10 +138,8 @@ class RemoteMachine:
 
     def telegrams(self, cycle: int, inbox: Sequence[CanFrame]) -> list[CanFrame]:
         """Send the frames and SYNC, return what the drives sent at it."""
-        body = b""
-        if self._bus is None:
-            body = telegraph.frames(inbox)
-        else:
+        body = telegraph.frames(inbox)
+        if self._bus is not None:
             # What stands there before the drives were asked came from others, who must not fill the queue.
             self._bus.clear()
             for frame in (*inbox, SYNC):
@@ -158,11 +157,11 @@ class RemoteMachine:
             self._drives.tell(telegraph.order(kind, cycle, self._numbers.command()))
         self.ahead = None
         answer = self._drives.answer()
-        state, numbers, _, due, edges = telegraph.read_reply(answer)
-        if state == telegraph.FAULT:
+        reply = telegraph.read_reply(answer)
+        if reply.state == telegraph.FAULT:
             return False
-        self._numbers.take_actual(numbers)
-        self._take(state, due, edges, cycle)
+        self._numbers.take_actual(reply.numbers)
+        self._take(reply, cycle)
         return True
 
     def send_ahead(self, cycle: int) -> None:
@@ -187,26 +186,32 @@ class RemoteMachine:
             self._take_images()
         return self._images
 
+    def take_foreign(self) -> list[CanFrame]:
+        """Return what others have sent on the bus since the last call."""
+        foreign, self._foreign = self._foreign, []
+        return foreign
+
     def take_edges(self) -> list[Edge]:
         """Return the edges of all signals since the last call."""
         edges, self._edges = self._edges, []
         return edges
 
-    def _frames(self, answer: tuple[int, bytes, bytes, bytes, bytes], cycle: int) -> list[CanFrame]:
+    def _frames(self, answer: Reply, cycle: int) -> list[CanFrame]:
         """Take the drives' answer; over a bus the frames themselves come from there."""
-        state, _, packed, due, edges = answer
-        self._take(state, due, edges, cycle)
-        announced = telegraph.read_frames(packed)
+        self._take(answer, cycle)
+        announced = telegraph.read_frames(answer.frames)
         return announced if self._bus is None else self._from_bus(announced)
 
-    def _take(self, state: int, due: bytes, edges: bytes, cycle: int) -> None:
+    def _take(self, answer: Reply, cycle: int) -> None:
         """Take the rest of the drives' answer."""
-        self._quiet = state == telegraph.QUIET
-        if due:
-            self._due += telegraph.read_frames(due)
-        if edges:
-            self._edges += telegraph.read_edges(edges, self._signals)
-        self._tell_terminals(cycle, edges)
+        self._quiet = answer.state == telegraph.QUIET
+        if answer.due:
+            self._due += telegraph.read_frames(answer.due)
+        if answer.foreign:
+            self._foreign += telegraph.read_frames(answer.foreign)
+        if answer.edges:
+            self._edges += telegraph.read_edges(answer.edges, self._signals)
+        self._tell_terminals(cycle, answer.edges)
 
     def _tell_terminals(self, cycle: int, edges: bytes) -> None:
         """Tell the terminals the edges of a cycle; they work while the kernel does something else."""

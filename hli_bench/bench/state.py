@@ -5,7 +5,6 @@ from typing import Any
 
 from hli_bench.base.units import mm
 from hli_bench.bench.config import MachineConfig
-from hli_bench.protocols.canopen.cia402 import state_of
 from hli_bench.runtime.engine import Engine
 from hli_bench.shells.pacing import Lateness
 from hli_bench.wire.images import TerminalLayout
@@ -31,7 +30,7 @@ def look(
                 "actual_mm": mm(round(float(row["actual"]))),
                 "lag_mm": mm(round(float(row["lag"]))),
                 "referenced": kernel.core.referenced[axis.index],
-                "drive": state_of(int(row["statusword"])),
+                "drive": kernel.drives.shown(axis.index),
                 "statusword": int(row["statusword"]),
             }
         )
@@ -48,6 +47,7 @@ def look(
         "terminals": {terminal.name: terminal.values(images[terminal.name]) for terminal in terminals},
         "plcs": [{"name": plc.name, "period_cycles": plc.period_cycles} for plc in engine.plcs],
         "net": dict(net),
+        "foreign_syncs": engine.foreign_syncs,
         "late_cycles": lateness.late if lateness else 0,
         "worst_lateness_us": lateness.worst_ns / 1000 if lateness else 0.0,
     }

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from enum import IntEnum
 from struct import Struct
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ _FRAME: Final = Struct("<HB")
 _EDGE: Final = Struct("<HqB")
 _HEAD: Final = Struct("<BQ")
 _COUNT: Final = Struct("<I")
-_REPLY: Final = Struct("<BHHH")
+_REPLY: Final = Struct("<BHHHI")
 _REMOTE: Final = 0x8000
 
 
@@ -96,25 +96,37 @@ def read_order(message: bytes) -> tuple[Order, int, bytes]:
     return Order(kind), cycle, message[_HEAD.size :]
 
 
-def reply(
-    state: int, numbers: bytes = b"", frames: bytes = b"", due: bytes = b"", edges: bytes = b""
-) -> bytes:
-    """Return the drives' answer to an order: numbers or frames of the SYNC, frames due by time, edges."""
-    return _REPLY.pack(state, len(numbers), len(frames), len(due)) + numbers + frames + due + edges
+class Reply(NamedTuple):
+    """The drives' answer to an order: numbers or frames of the SYNC, frames due by time, frames of others, edges."""
+
+    state: int
+    numbers: bytes = b""
+    frames: bytes = b""
+    due: bytes = b""
+    foreign: bytes = b""
+    edges: bytes = b""
 
 
-def read_reply(message: bytes) -> tuple[int, bytes, bytes, bytes, bytes]:
-    """Return state, numbers, frames, frames due by time, edges."""
-    state, numbers, frames, due = _REPLY.unpack_from(message)
+def reply(answer: Reply) -> bytes:
+    """Pack the drives' answer."""
+    state, *before, edges = answer
+    return b"".join((_REPLY.pack(state, *map(len, before)), *before, edges))
+
+
+def read_reply(message: bytes) -> Reply:
+    """Unpack the drives' answer."""
+    state, numbers, frames, due, foreign = _REPLY.unpack_from(message)
     first = _REPLY.size + numbers
     second = first + frames
     third = second + due
-    return (
+    last = third + foreign
+    return Reply(
         state,
         message[_REPLY.size : first],
         message[first:second],
         message[second:third],
-        message[third:],
+        message[third:last],
+        message[last:],
     )
 
 

@@ -104,14 +104,22 @@ class Core:
         self.image.set(self.image.layout.element(path).id, value)
 
     def report(
-        self, sheet: ErrorSheet, source: Source, *values: float | str, axis: AxisIndex | None = None
+        self,
+        sheet: ErrorSheet,
+        source: Source,
+        *values: float | str,
+        axis: AxisIndex | None = None,
+        cause: str = "",
     ) -> None:
-        """Emit an error or warning of the emulated CNC; `values` in the order of the sheet."""
+        """Emit an error or warning of the emulated CNC; `values` in the order of the sheet.
+
+        `cause` is what the bench knows beyond the message of the CNC.
+        """
         self.emitted.append(
             CncError(
                 number=sheet.number,
                 severity=sheet.severity,
-                text=sheet.message(values),
+                text=sheet.message(values) + (f": {cause}" if cause else ""),
                 source=source,
                 axis=self.axis(axis).name if axis is not None else "",
                 values=dict(zip(sheet.values, values, strict=False)),

@@ -10,17 +10,13 @@ from hli_bench.kernel.blocks import Source
 from hli_bench.kernel.channel import Channel
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.decoder import WITHOUT_MOTION, Decoder, DecoderAxis, DecoderDefaults
-from hli_bench.kernel.drive_manager import start_up
-from hli_bench.kernel.drive_manager.objects import ObjectChannel
-from hli_bench.kernel.drive_manager.telegram import ActualTelegrams, CommandTelegrams
+from hli_bench.kernel.drive_manager.manager import DriveManager
 from hli_bench.kernel.hindrances import holding, in_vain, unheard
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.records import Emitted
-from hli_bench.kernel.sequence import END, Sequence
 from hli_bench.kernel.setup import KernelSetup
-from hli_bench.laws.rows import FOLLOW, KernelRows
+from hli_bench.laws.rows import KernelRows
 from hli_bench.manual.errors import hli as hli_errors
-from hli_bench.protocols.canopen.cia402 import STATES
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
 from hli_bench.protocols.hli.image import Image
 from hli_bench.protocols.hli.layout import layout_of
@@ -41,13 +37,9 @@ class Kernel:
         defaults = {"release_feedhold": True, "override": FULL_OVERRIDE}
         units = ControlUnits(self.image, defaults)
         self.core = Core.build(setup, self.image, units)
-        self._objects = ObjectChannel(axis.node for axis in setup.axes)
-        nodes = [axis.node for axis in setup.axes]
-        self._actual = ActualTelegrams(nodes, self.core.rows.axis)
-        self._commands = CommandTelegrams(nodes, self.core.rows.axis)
         self._monitoring = Monitoring(self.core)
-        self.channel = Channel(self.core, self._objects, self._monitoring)
-        self._starting: dict[AxisIndex, Sequence[start_up.Drive]] = {}
+        self.drives = DriveManager(self.core, self._monitoring)
+        self.channel = Channel(self.core, self.drives.objects, self._monitoring)
         layout = self.image.layout
         areas = [f"ax/{axis.number}/lr_state" for axis in setup.axes]
         offsets = np.array([layout.element(f"{area}/active_position_r").offset for area in areas])
@@ -61,25 +53,6 @@ class Kernel:
         """The kernel's rows, for the compiled laws."""
         return self.core.rows
 
-    @property
-    def ready(self) -> bool:
-        """All drives are in operation."""
-        return bool(self._starting) and all(sequence.ended for sequence in self._starting.values())
-
-    def out(self) -> list[str]:
-        """Return the names of the axes whose drives are not in operation."""
-        return [axis.name for axis in self.setup.axes if not self._starting[axis.index].ended]
-
-    @property
-    def telegram_ids(self) -> frozenset[int]:
-        """COB-IDs of the telegrams that every cycle brings."""
-        return self._actual.cob_ids
-
-    def begin_start_up(self) -> None:
-        """Begin to bring all drives into operation."""
-        for axis in self.setup.axes:
-            self._begin_drive(axis.index, "configure")
-
     def start(self, lines: Iterable[str], name: str, without_motion: int = WITHOUT_MOTION) -> None:
         """Begin an NC program. Usage errors of its text come out of `decide`.
 
@@ -92,24 +65,15 @@ class Kernel:
         decoder = Decoder(lines, name, axes, DecoderDefaults(self.setup.channel.messtyp), without_motion)
         self.channel.start(decoder)
 
-    def take_frames(self, frames: Iterable[CanFrame]) -> bool:
-        """Take what the bus brought at this SYNC; tell whether any of it needs a decision."""
-        others = self._actual.take(frames)
-        for frame in others:
-            self.core.frames += self._objects.on_frame(frame, self.core.now)
-            self._monitoring.emergency(frame)
-        return bool(others)
-
     def decide(self) -> None:
         """Decide what comes next: called between `sense` and `act`, `core.cycle` being the cycle."""
         core = self.core
         for unit in core.units.sample():
             self._unit_changed(unit)
-        self._start_drives()
-        for axis in self._monitoring.check(self.channel.source):
-            self._drive_lost(axis)
+        self._monitoring.check(self.channel.source)
+        self.drives.step(self.channel.source)
         self.channel.step()
-        core.frames += self._objects.begin(core.now)
+        self.drives.serve_objects()
 
     def begin_cycle(self, cycle: int) -> None:
         """Tell the kernel which cycle it is in."""
@@ -120,38 +84,18 @@ class Kernel:
         frames, self.core.frames = self.core.frames, []
         return frames
 
-    def cyclic_frames(self) -> list[CanFrame]:
-        """Return the command telegrams of this cycle, in identifier order."""
-        return self._commands.frames()
-
     def take_emitted(self) -> list[Emitted]:
         """Return what was emitted since the last call."""
         emitted, self.core.emitted = self.core.emitted, []
         return emitted
 
     def reset(self) -> None:
-        """CNC reset: end the program, clear errors, bring stopped drives back into operation.
-
-        A drive that is being configured begins anew; one further on its way into operation goes on, unless it has
-        a fault.
-        """
+        """CNC reset: end the program, clear errors, bring drives that dropped out back into operation."""
         self.channel.abort()
-        self._objects.clear()
         self.core.failed = False
-        tripped = self._monitoring.take_tripped()
         for axis in self.setup.axes:
             self.core.show(axis.index, "head/error_r", False)
-            under_way = self._starting[axis.index].phase if axis.index in self._starting else END
-            mask, fault = STATES["fault"]
-            if under_way == "configure":
-                self._begin_drive(axis.index, "configure")
-            elif under_way != END and self.core.row(axis.index)["statusword"] & mask != fault:
-                continue
-            elif self.core.row(axis.index)["mode"] == FOLLOW:
-                self._begin_drive(axis.index, "reset")
-            elif axis.index in tripped:
-                self._monitoring.switch_off(axis.index)
-                self._begin_drive(axis.index, "disable")
+        self.drives.reset()
 
     def plc_lost(self, name: str) -> None:
         """A PLC has gone or frozen: the CNC reacts as to a PLC stop, the program ends with an error."""
@@ -178,28 +122,6 @@ class Kernel:
     def source(self) -> Source:
         """The block in execution."""
         return self.channel.source
-
-    def _begin_drive(self, axis: AxisIndex, phase: str) -> None:
-        if axis in self._starting:
-            self._starting[axis].abort()
-        drive = start_up.Drive(self.core, self._objects, axis)
-        self._starting[axis] = Sequence(start_up.TABLE, drive, phase, self.core.watches)
-        self.core.starting.add(axis)
-
-    def _start_drives(self) -> None:
-        under_way = [(axis, one) for axis, one in self._starting.items() if not one.ended]
-        for axis, sequence in under_way:
-            sequence.step()
-            if sequence.ended:
-                self.core.starting.discard(axis)
-                self._monitoring.switch_on(axis)
-
-    def _drive_lost(self, axis: AxisIndex) -> None:
-        """A drive has dropped out: its set point follows, the others brake with the path."""
-        core = self.core
-        core.row(axis)["mode"] = FOLLOW
-        core.row(axis)["controlword"] = 0
-        core.show(axis, "head/error_r", True)
 
     def _unit_changed(self, unit: ControlUnit) -> None:
         """A PLC changed a unit that acts by itself; probing and homing ask theirs when they need them."""

@@ -53,11 +53,11 @@ Table = Mapping[str, Phase[Context]]
 class Sequence(Generic[Context]):
     """One run through a table; no other code changes its phase."""
 
-    __slots__ = ("_armed", "_context", "_table", "_watches", "phase")
+    __slots__ = ("_armed", "_table", "_watches", "context", "phase")
 
     def __init__(self, table: Table[Context], context: Context, first: str, watches: Watches) -> None:
         self._table = table
-        self._context = context
+        self.context = context
         self._watches = watches
         self._armed: list[tuple[Then[Context], int | Level]] = []
         self.phase = END
@@ -84,8 +84,8 @@ class Sequence(Generic[Context]):
     def _take(self, met: Then[Context]) -> None:
         """Go the way that was met."""
         if met.action is not None:
-            met.action(self._context)
-        phase = met.next if isinstance(met.next, str) else met.next(self._context)
+            met.action(self.context)
+        phase = met.next if isinstance(met.next, str) else met.next(self.context)
         if phase == self.phase:
             self._disarm([met])
         else:
@@ -100,9 +100,9 @@ class Sequence(Generic[Context]):
         if phase == END:
             return
         row = self._table[phase]
-        row.motion(self._context)
+        row.motion(self.context)
         for way in row.ways:
-            until = way.until(self._context)
+            until = way.until(self.context)
             armed = until if isinstance(until, Level) else self._watches.watch(until)
             self._armed.append((way, armed))
 

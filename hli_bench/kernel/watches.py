@@ -84,6 +84,11 @@ def statusword(axis: int, mask: int, value: int) -> Condition:
     return Condition(kind=law.W_STATUSWORD, axis=axis, mask=mask, value=value)
 
 
+def statusword_left(axis: int, mask: int, value: int) -> Condition:
+    """Bits of the drive's statusword are no longer what they were."""
+    return Condition(kind=law.W_STATUSWORD_LEFT, axis=axis, mask=mask, value=value)
+
+
 def digital_input(axis: int, mask: int, value: int) -> Condition:
     """Bits of the drive's digital inputs."""
     return Condition(kind=law.W_DIGITAL_INPUT, axis=axis, mask=mask, value=value)

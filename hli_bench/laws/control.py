@@ -27,6 +27,7 @@ from hli_bench.laws.rows import (
     W_SEGMENT,
     W_STANDSTILL_LAG_OVER,
     W_STATUSWORD,
+    W_STATUSWORD_LEFT,
     Row,
     Rows,
 )
@@ -64,6 +65,8 @@ def holds(one: Row, path: Row, row: Row, cycle: int) -> bool:
         return abs(one["lag"]) > row["limit"]
     if kind == W_STANDSTILL_LAG_OVER:
         return one["velocity"] == 0.0 and abs(one["lag"]) > row["limit"]
+    if kind == W_STATUSWORD_LEFT:
+        return (one["statusword"] & row["mask"]) != row["value"]
     if kind == W_STATUSWORD:
         return (one["statusword"] & row["mask"]) == row["value"]
     if kind == W_CYCLE:

@@ -56,6 +56,7 @@ W_CYCLE: Final = 10
 W_STANDSTILL_LAG_OVER: Final = 11
 W_MOVED: Final = 12
 W_FREE: Final = 13
+W_STATUSWORD_LEFT: Final = 14
 
 AXIS: Final = np.dtype(
     [

@@ -5,7 +5,7 @@ one in which control words change passes numbers too. Every other cycle hands re
 frames from them. All give the same bits.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, Protocol
 
 from hli_bench.base.errors import BenchError
@@ -15,6 +15,7 @@ from hli_bench.kernel.records import Emitted
 from hli_bench.laws import stride as law
 from hli_bench.laws.native import bind
 from hli_bench.laws.rows import LOG_CYCLES, MachineRows, Rows
+from hli_bench.protocols.canopen.sync import SYNC_COB_ID
 from hli_bench.protocols.hli.access import Access, Refusal
 from hli_bench.wire.can import CanFrame
 from hli_bench.wire.hli import Commands
@@ -50,6 +51,9 @@ class Link(Protocol):
 
     def take_edges(self) -> list[Edge]:
         """Return the edges of all signals since the last call."""
+
+    def take_foreign(self) -> list[CanFrame]:
+        """Return what others sent on the bus since the last call."""
 
 
 class PlcPort(Protocol):
@@ -107,7 +111,10 @@ class Engine:
         self.observers: list[Observer] = []
         self.listeners: list[Listener] = []
         self.lost: list[PlcPort] = []
+        self.foreign_syncs = 0
+        """SYNC frames that were not the CNC's: the drives do not act on them."""
         self._orders: list[CanFrame] = []
+        self._foreign: list[CanFrame] = []
         self._decide = True
         self._cycle_ns = kernel.setup.cycle_ns
         self._tick = NO_TICK
@@ -139,6 +146,11 @@ class Engine:
         )
 
     @property
+    def frames_wait(self) -> bool:
+        """Frames beside the telegrams are to pass with the next SYNC."""
+        return bool(self._orders or self._foreign)
+
+    @property
     def dc_ns(self) -> Ns:
         """DC time of the last completed cycle."""
         return Ns(self.kernel.setup.dc_epoch_ns + self.cycle * self._cycle_ns)
@@ -146,9 +158,9 @@ class Engine:
     def power_on(self) -> None:
         """Boot the drives and begin the start-up of the kernel."""
         frames = self.link.power_on()
-        self.kernel.take_frames(frames)
+        self.kernel.drives.take(frames)
         self._tell_frames(0, frames)
-        self.kernel.begin_start_up()
+        self.kernel.drives.begin_start_up()
 
     def step(self, limit: int) -> None:
         """Run a stretch: to the next decision, PLC tick or `limit`, whichever comes first."""
@@ -184,6 +196,12 @@ class Engine:
         """Let the kernel decide in the next cycle: something has been put from outside."""
         self._decide = True
 
+    def put(self, frames: Iterable[CanFrame]) -> None:
+        """Let frames of somebody else pass on the bus with the next SYNC."""
+        given = list(frames)
+        self._note_foreign(self.cycle, given)
+        self._foreign += [frame for frame in given if frame.cob_id != SYNC_COB_ID]
+
     def apply(self, commands: Commands) -> list[Refusal]:
         """Let writes from outside count from the next cycle on; return those that were refused."""
         refusals = self.access.apply(commands)
@@ -207,7 +225,7 @@ class Engine:
 
     def _stretch(self, first: int, limit: int) -> int:
         """Return how many cycles from `first` on may be strided over; WORDS or FRAMES when not even one may."""
-        if self._orders:
+        if self.frames_wait:
             return FRAMES
         if self._new_words:
             return WORDS if self.link.quiet(first) > 0 else FRAMES
@@ -245,18 +263,21 @@ class Engine:
         if frames:
             self._loud = 0
             self._tell_frames(cycle, frames)
-            if self.kernel.take_frames(frames):
+            self.kernel.begin_cycle(cycle)
+            if self.kernel.drives.take(frames):
                 self._decide = True
 
     def _telegrams(self, cycle: int) -> None:
         """Pass real frames at the SYNC of a cycle."""
         self._words, self._new_words, self._loud = self._word_bytes(), False, 0
         orders, self._orders = self._orders, []
+        foreign, self._foreign = self._foreign, []
         self.kernel.begin_cycle(cycle)
-        frames = self.link.telegrams(cycle, [*self.kernel.cyclic_frames(), *orders])
-        ids = self.kernel.telegram_ids
+        frames = self.link.telegrams(cycle, [*foreign, *self.kernel.drives.cyclic_frames(), *orders])
+        self._note_foreign(cycle - 1, self.link.take_foreign())
+        ids = self.kernel.drives.telegram_ids
         self._tell_frames(cycle, [frame for frame in frames if frame.cob_id not in ids])
-        if self.kernel.take_frames(frames):
+        if self.kernel.drives.take_telegrams(frames):
             self._decide = True
 
     def _stride(self, cycle: int, cycles: int, phase: int) -> tuple[int, int]:
@@ -342,6 +363,12 @@ class Engine:
         self.access.leave(name)
         self.kernel.plc_lost(name)
         self._decide = True
+
+    def _note_foreign(self, cycle: int, frames: Sequence[CanFrame]) -> None:
+        """Record what others sent behind the SYNC of a cycle."""
+        if frames:
+            self.foreign_syncs += sum(frame.cob_id == SYNC_COB_ID for frame in frames)
+            self._tell_frames(cycle, frames)
 
     def _tell_frames(self, cycle: int, frames: Sequence[CanFrame]) -> None:
         if frames:

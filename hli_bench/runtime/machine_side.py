@@ -237,6 +237,10 @@ class MachineSide:
             self._images = {image.terminal: image.data for image in images}
         return self._images
 
+    def take_foreign(self) -> list[CanFrame]:
+        """Return nothing: in this process nobody else is on the bus."""
+        return []
+
     def take_edges(self) -> list[Edge]:
         """Return the edges of all signals since the last call, in order."""
         count = int(self.rows.edges[0])

@@ -54,7 +54,14 @@ class CanBus:
         while (rest := deadline - time.monotonic()) > 0:
             message = self._next(rest)
             if message is not None and not message.is_extended_id and not message.is_error_frame:
-                return CanFrame(message.arbitration_id, bytes(message.data), message.is_remote_frame)
+                return _frame(message)
+        return None
+
+    def receive_now(self) -> CanFrame | None:
+        """Return the next 11-bit frame that is there already."""
+        while (message := self._next(0.0)) is not None:
+            if not message.is_extended_id and not message.is_error_frame:
+                return _frame(message)
         return None
 
     def clear(self) -> None:
@@ -74,3 +81,7 @@ class CanBus:
     def close(self) -> None:
         """Leave the bus."""
         self._bus.shutdown()
+
+
+def _frame(message: Any) -> CanFrame:
+    return CanFrame(message.arbitration_id, bytes(message.data), message.is_remote_frame)

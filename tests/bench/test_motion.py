@@ -227,10 +227,10 @@ def test_reset_during_start_up_does_not_keep_the_drives_from_operation(make, rec
     while bench.engine.cycle < cycles:
         bench.engine.step(cycles)
     bench.reset()
-    while not bench.kernel.ready and bench.engine.cycle < 2000:
+    while not bench.kernel.drives.ready and bench.engine.cycle < 2000:
         bench.engine.step(2000)
 
-    assert bench.kernel.ready
+    assert bench.kernel.drives.ready
     assert (bench.kernel.rows.axis["statusword"] & 0x6F == 0x27).all()
 
 
@@ -256,7 +256,7 @@ def test_drive_fault_comes_as_emcy_and_a_reset_brings_the_drive_back(make, recor
     assert errors(result) == [(70222, "X", "N10")]
     assert "0x8611" in result.errors[0].text
     assert emergencies[0].data[:2] == bytes((0x11, 0x86))
-    bench.advance(50)
+    bench.advance(1500)
     assert recorder.column("statusword", X)[-1] & 0x4F == 0x08
     y = recorder.velocity(Y)
     assert (np.diff(y) / 1e-3).min() > -2001.0, "the other axis brakes"

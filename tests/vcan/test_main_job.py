@@ -188,3 +188,55 @@ def test_a_canopen_master_reads_a_drive_while_the_bench_runs(served: str) -> Non
     state = json.loads(shown.stdout)
     assert state["state"] == "ready"
     assert {axis["drive"] for axis in state["axes"]} == {"operation enabled"}
+
+
+def _told(endpoint: str) -> dict[str, Any]:
+    shown = subprocess.run(
+        [HLI_BENCH, "state", "--json", "--connect", endpoint], capture_output=True, text=True, check=True
+    )
+    state: dict[str, Any] = json.loads(shown.stdout)
+    return state
+
+
+def test_a_node_that_somebody_reboots_is_noticed_and_back_after_a_reset(served: str, tmp_path: Path) -> None:
+    """python-canopen as a foreign NMT master, then `hli-bench reset`, then a program."""
+    program = tmp_path / "move.nc"
+    program.write_text("%move\nN10 G01 G90 Z299.9 F6000\nN20 M30\n")
+    network = canopen.Network()
+    network.connect(interface="socketcan", channel="vcan0")
+    try:
+        for command, sign in ((0x81, "it has booted again"), (0x02, "its telegrams stay out")):
+            before = _told(served)["cycle"]
+            network.send_message(0x000, bytes((command, 3)))
+            while (state := _told(served))["state"] != "error":
+                assert state["cycle"] < before + 20_000
+            drives = {axis["name"]: axis["drive"] for axis in state["axes"]}
+            assert drives.pop("Z") == f"no telegrams: {sign}"
+            assert set(drives.values()) == {"operation enabled"}
+            run = [HLI_BENCH, "run", program, "--connect", served]
+            refused = subprocess.run(run, capture_output=True, text=True, check=False)
+            assert (refused.returncode, "70101" in refused.stderr) == (1, True)
+            subprocess.run([HLI_BENCH, "reset", "--connect", served], check=True)
+            assert {axis["drive"] for axis in _told(served)["axes"]} == {"operation enabled"}
+            subprocess.run(run, check=True)
+    finally:
+        network.disconnect()
+
+
+def test_a_foreign_sync_does_not_shift_the_cycle(served: str, tmp_path: Path) -> None:
+    """Behind it the drives still stand where they are told with each SYNC of the CNC: the lag stays what it was."""
+    program = tmp_path / "measure.nc"
+    program.write_text("%move\nN10 G01 G90 Z299 F600\nN20 G01 G90 Z299.5 F600\nN30 M30\n")
+    network = canopen.Network()
+    network.connect(interface="socketcan", channel="vcan0")
+    try:
+        before = _told(served)["foreign_syncs"]
+        for _ in range(3):
+            network.send_message(0x080, b"")
+        while (state := _told(served))["foreign_syncs"] != before + 3:
+            assert state["foreign_syncs"] < before + 3
+        subprocess.run([HLI_BENCH, "run", program, "--connect", served], check=True)
+        subprocess.run([HLI_BENCH, "reset", "--connect", served], check=True)
+        assert abs(next(axis["lag_mm"] for axis in _told(served)["axes"] if axis["name"] == "Z")) < 0.01
+    finally:
+        network.disconnect()

@@ -66,6 +66,11 @@ class ObjectChannel:
         self._finish(NodeId(client.node_id))
         return frames
 
+    def next_due(self) -> Ns | None:
+        """Return when an answer that is waited for becomes overdue."""
+        dues = [due for client in self._clients.values() if (due := client.next_due()) is not None]
+        return min(dues, default=None)
+
     @property
     def busy(self) -> bool:
         """Orders are waiting or on their way."""

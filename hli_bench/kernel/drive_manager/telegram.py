@@ -41,10 +41,11 @@ class CommandTelegrams:
 class ActualTelegrams:
     """Takes TPDOs into the axis rows; a frame of another length than configured is left out.
 
-    `cob_ids` are those of all actual value telegrams: what a cycle waits for.
+    `cob_ids` are those of all actual value telegrams: what a cycle waits for. `missing` are those that did not come
+    when frames were taken last.
     """
 
-    __slots__ = ("_takers", "cob_ids")
+    __slots__ = ("_takers", "cob_ids", "missing")
 
     def __init__(self, nodes: Sequence[NodeId], axis: Rows) -> None:
         """`nodes` in the order of the rows."""
@@ -55,10 +56,12 @@ class ActualTelegrams:
             for index, node in enumerate(nodes)
         }
         self.cob_ids = frozenset(self._takers)
+        self.missing: frozenset[int] = frozenset()
 
     def take(self, frames: Iterable[CanFrame]) -> list[CanFrame]:
         """Take the actual value telegrams among the frames; return the others."""
         others = []
+        came: list[int] = []
         for frame in frames:
             taker = self._takers.get(frame.cob_id)
             if taker is None:
@@ -66,8 +69,10 @@ class ActualTelegrams:
                 continue
             size, unpack, columns, index = taker
             if len(frame.data) == size:
+                came.append(frame.cob_id)
                 for column, value in zip(columns, unpack(frame.data)):  # noqa: B905 (one each)
                     column[index] = value
+        self.missing = frozenset() if len(came) == len(self.cob_ids) else self.cob_ids.difference(came)
         return others
 
 

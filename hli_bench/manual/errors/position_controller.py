@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from hli_bench.manual.errors.record import ErrorSheet, axis_error, diagnosis, warning
+from hli_bench.manual.errors.record import ErrorSheet, ReactionClass, axis_error, diagnosis, warning
 
 POSITION_LAG: Final[ErrorSheet] = axis_error(
     "position_lag",
@@ -71,6 +71,17 @@ FEED_RELEASE_MISSING: Final[ErrorSheet] = axis_error(
     "axis {0} is to move but its feed release is missing",
     "logical axis number",
 )
+DRIVE_NOT_READY: Final[ErrorSheet] = axis_error(
+    "drive_not_ready",
+    70_221,
+    "axis {0}: its drive has left operation enabled, status word {2}",
+    "logical axis number",
+    "drive type",
+    "status word of the drive",
+    "block number",
+    source=diagnosis(70221),
+    reaction=ReactionClass.STOP_AXIS,
+)
 CANOPEN_DRIVE_ERROR: Final[ErrorSheet] = axis_error(
     "canopen_drive_error",
     70_222,
@@ -84,8 +95,13 @@ GANTRY_HOMING_PATH: Final[ErrorSheet] = axis_error(
 DRIVE_DATA_INVALID: Final[ErrorSheet] = axis_error(
     "drive_data_invalid",
     70_231,
-    "axis {0} is to move but its drive supplies no valid data",
+    "axis {0} moves but its drive supplies no valid data",
     "logical axis number",
+    "drive type",
+    "data of the drive are valid",
+    "block number",
+    source=diagnosis(70231),
+    reaction=ReactionClass.STOP_AXIS,
 )
 GANTRY_HOMING_TYPES: Final[ErrorSheet] = warning(
     "gantry_homing_types", 70_263, "homing types of master and slave {0} differ", "logical axis number"
@@ -163,6 +179,17 @@ LIMITS_SWAPPED: Final[ErrorSheet] = warning(
     "axis {0}, {1}: largest value is below the smallest, they are swapped",
     "logical axis number",
     "object",
+)
+REFERENCE_LOST_WITH_BUS: Final[ErrorSheet] = axis_error(
+    "reference_lost_with_bus",
+    70_389,
+    "axis {0} has lost its reference with the bus",
+    "logical axis number",
+    "drive type",
+    "referenced before",
+    "referenced now",
+    "telegrams that failed",
+    source=diagnosis(70389),
 )
 INPUT_NOT_CHANGEABLE: Final[ErrorSheet] = axis_error(
     "input_not_changeable",
@@ -342,6 +369,17 @@ DETECTION_TORQUE: Final[ErrorSheet] = warning(
     70_648,
     "axis {0}: detection torque is above its maximum, corrected",
     "logical axis number",
+)
+DRIVE_DATA_INVALID_AT_STANDSTILL: Final[ErrorSheet] = axis_error(
+    "drive_data_invalid_at_standstill",
+    70_643,
+    "axis {0} stands and its drive supplies no valid data",
+    "logical axis number",
+    "drive type",
+    "data of the drive are valid",
+    "block number",
+    source=diagnosis(70643),
+    reaction=ReactionClass.STOP_AXIS,
 )
 TORQUE_HOMING_COUPLED: Final[ErrorSheet] = axis_error(
     "torque_homing_coupled", 70_649, "homing to a fixed stop of coupled axis {0}", "logical axis number"

@@ -101,7 +101,13 @@ def motion_error(name: str, number: int, text: str, *values: str, source: str = 
 
 
 def axis_error(
-    name: str, number: int, text: str, *values: str, source: str = CATALOGUE, remedy: int = 6
+    name: str,
+    number: int,
+    text: str,
+    *values: str,
+    source: str = CATALOGUE,
+    remedy: int = 6,
+    reaction: ReactionClass = ReactionClass.CONTROLLED_STOP,
 ) -> ErrorSheet:
     """Return an error of the position control: controlled stop, restart of the channel (classes 7 and 6)."""
     return ErrorSheet(
@@ -109,7 +115,7 @@ def axis_error(
         name=name,
         text=text,
         severity=Severity.ERROR,
-        reaction_class=ReactionClass.CONTROLLED_STOP,
+        reaction_class=reaction,
         remedy_class=remedy,
         values=values,
         source=source,

@@ -11,6 +11,8 @@ CYCLIC_SYNCHRONOUS_POSITION: Final = 8
 class Command(IntEnum):
     """Controlwords that walk through the states."""
 
+    DISABLE_VOLTAGE = 0x00
+    QUICK_STOP = 0x02
     SHUT_DOWN = 0x06
     SWITCH_ON = 0x07
     ENABLE_OPERATION = 0x0F

@@ -11,7 +11,7 @@ VCAN ?= yes
 # How many processes share the tests.
 WORKERS ?= 2
 
-.PHONY: help run test lint pytest test-vcan coverage-req bench lock clean
+.PHONY: help run test lint pytest test-vcan coverage-req mutants bench lock clean
 
 help: ## Lists the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -39,6 +39,9 @@ test-vcan: .venv/.dev ## The tests on a real SocketCAN vcan0, in a virtual machi
 
 coverage-req: .venv/.dev ## How each requirement line is shown: behaviour, parsing, table; open ones begin with open:
 	$(BIN)/python tools/coverage_req.py
+
+mutants: .venv/.dev ## Breaks the code on purpose: how many of the changes the marked tests notice
+	$(BIN)/python tools/mutants.py
 
 bench: .venv/.dev ## The benchmarks; they print ratios measured side by side
 	for benchmark in benchmarks/[a-z]*.py; do $(BIN)/python "$$benchmark"; done

@@ -90,7 +90,7 @@ def test_three_phases_with_zero_pulse(make, recorder):
     assert bench.kernel.image.get(done)
 
 
-@pytest.mark.req("H-007", "H-020")
+@pytest.mark.req("H-007", "H-020", "H-165", "H-199")
 @pytest.mark.parametrize("slow_um", [2_000, 5_000, 20_000])
 def test_axis_stands_the_braking_distance_behind_its_reference(make, recorder, slow_um):
     """It goes on while the latch travels to the CNC, then brakes with P-AXIS-00285."""
@@ -105,7 +105,7 @@ def test_axis_stands_the_braking_distance_behind_its_reference(make, recorder, s
     assert truth_mm(bench, X) == pytest.approx(bench.position_mm("X"), abs=2e-5)
 
 
-@pytest.mark.req("H-015", "H-016", "H-041")
+@pytest.mark.req("H-015", "H-016", "H-041", "H-157", "H-198")
 @pytest.mark.parametrize("slow_um", [1_000, 5_000, 20_000, 40_000])
 def test_zero_pulse_reference_does_not_depend_on_the_speed(make, slow_um):
     bench = make(axis("X", 3.21, **{"getriebe[0].vb_reflow": slow_um}))
@@ -115,7 +115,7 @@ def test_zero_pulse_reference_does_not_depend_on_the_speed(make, slow_um):
     assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=2e-5)
 
 
-@pytest.mark.req("H-010", "H-014", "H-042", "H-050", "H-051")
+@pytest.mark.req("H-010", "H-014", "H-042", "H-050", "H-051", "H-157", "H-198")
 @pytest.mark.parametrize("slow_um", [1_000, 5_000, 15_000, 40_000])
 def test_cam_reference_is_off_by_speed_times_sampling(make, slow_um):
     """Seen by the PLC's next cycle, acted on one kernel cycle later: (T, 2T] times the speed."""
@@ -166,7 +166,7 @@ def test_axis_on_the_cam_begins_with_phase_two(make, recorder):
     assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=2e-5)
 
 
-@pytest.mark.req("H-047", "H-196")
+@pytest.mark.req("H-047", "H-161", "H-196")
 @pytest.mark.parametrize(("fast", "speed"), [(0, SLOW_UM), (1, FAST_UM)])
 def test_way_off_the_cam_is_fast_or_slow(make, recorder, fast, speed):
     bench = make(axis("X", -100.0, **{"kenngr.fast_from_cam": fast}), recorder=recorder)
@@ -175,7 +175,7 @@ def test_way_off_the_cam_is_fast_or_slow(make, recorder, fast, speed):
     assert phases(recorder, X)[0] == pytest.approx(speed / 1e3, abs=0.15)
 
 
-@pytest.mark.req("H-043", "H-158")
+@pytest.mark.req("H-043", "H-159", "H-202")
 def test_positive_homing_direction(make, recorder):
     settings = axis("X", 0.0, **{"kenngr.ref_richt": 1, "getriebe[0].pos_refpkt": 550_000})
     settings |= {"plant.cam.X.from_mm": 50.0, "plant.cam.X.to_mm": 200.0}
@@ -189,7 +189,7 @@ def test_positive_homing_direction(make, recorder):
     assert bench.position_mm("X") > 55.0
 
 
-@pytest.mark.req("H-031")
+@pytest.mark.req("H-031", "H-155")
 def test_normally_closed_cam_is_told_by_its_level(make, recorder):
     """P-AXIS-00038 = 0: the signal is there off the cam. The switch closes everywhere but below -50."""
     settings = axis("X", 0.0, **{"lr_hw[0].cam_level": 0})

@@ -84,7 +84,7 @@ class Both(Plc):
     assert second == pytest.approx([0.0, offsets[1]], abs=2e-4)
 
 
-@pytest.mark.req("M-236", "M-134")
+@pytest.mark.req("M-236", "M-134", "M-200")
 @pytest.mark.parametrize(
     ("edge", "level"),
     [("POS", "x > 7.0 and not 8.0 < x < 9.0"), ("NEG", "not (x > 7.0 and not 8.0 < x < 9.0)")],
@@ -125,10 +125,36 @@ def test_the_unit_does_not_act_on_a_run_of_the_drive(make, signal):
     assert bench.position_mm("X") == pytest.approx(15.0, abs=1e-3)
 
 
+@pytest.mark.req("M-025", "M-028")
+@pytest.mark.parametrize("kind", [1, 4])
+@pytest.mark.parametrize("feed", [300, 900])
+def test_run_takes_the_f_word(make, recorder, kind, feed):
+    make(recorder=recorder).run(f"%p\nN10 #MEAS MODE[{kind}]\nN20 G100 X5 F{feed}\nN30 M30\n")
+
+    assert recorder.velocity(X).max() == pytest.approx(feed / 60.0, abs=1e-6)
+
+
+@pytest.mark.req("M-211")
+def test_source_plc_ignores_the_number_of_the_input(make, signal):
+    settings = {"axis.X.kenngr.measure.signal": "PLC", "axis.X.kenngr.measure.input": 2}
+    result = make(settings, plc=[signal("x > 7.0")]).run("%p\nN10 G100 X15 F600\nN20 M30\n")
+
+    assert [one.acs_mm for one in result.measurements] == [pytest.approx(7.015, abs=0.015)]
+
+
 @pytest.mark.req("M-229")
-def test_program_does_not_go_on_behind_error_51026(make, errors):
-    share = "axis.Z.kenngr.measure.fixed_stop_detect.start_distance_per_mille"
-    bench = make({"axis.Z.start_mm": 90.0, share: 1001})
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"kenngr.measure.fixed_stop_detect.start_distance_per_mille": 1001},
+        {
+            "kenngr.measure.fixed_stop_detect.start_distance_per_mille": -1,
+            "antr.fixed_stop.detect.start_distance_per_mille": 1001,
+        },
+    ],
+)
+def test_program_does_not_go_on_behind_error_51026(make, errors, given):
+    bench = make({"axis.Z.start_mm": 90.0} | {f"axis.Z.{key}": value for key, value in given.items()})
     result = bench.run("%p\n#MEAS MODE[7]\nN50 G100 Z110 F600\nN60 G01 X20 F6000\nN70 M30\n")
     bench.advance(100)
 

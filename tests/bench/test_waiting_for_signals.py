@@ -70,7 +70,8 @@ def test_run_of_two_axes_waits_for_both_signals(make, own_signals, errors, only)
     assert half.variables[f"V.A.MERF.{'XY'[only - 1]}"] == 1.0
 
 
-@pytest.mark.req("M-002", "M-041", "M-042", "M-043")
+@pytest.mark.req("M-002", "M-041", "M-042")
+@pytest.mark.req("M-043", by="parsing")
 def test_example_standard_waits_for_the_moved_axes_only(make, script):
     """The PLC gives a signal only while the run of the very axis is active: N30 X, N50 Y, N70 X and Y."""
     text = """
@@ -209,7 +210,7 @@ def test_no_signal_is_error_50057_when_the_channel_says_so(make, errors):
     assert bench.position_mm("Z") == pytest.approx(10.0, abs=1e-3), "the next block is not executed"
 
 
-@pytest.mark.req("M-192")
+@pytest.mark.req("M-192", "E-006")
 @pytest.mark.parametrize(("word", "failed"), [("ERR_NO_SIGNAL=1", True), ("ERR_NO_SIGNAL=0", False)])
 def test_program_overrides_the_channel(make, word, failed):
     bench = make({"axis.Z.start_mm": 20.0, "channel.meas_error_no_signal": not failed})
@@ -325,7 +326,8 @@ def test_drive_ignores_the_other_edge(make, edge):
     assert len(out.measurements) == (edge == "NEG")
 
 
-@pytest.mark.req("M-130", "M-209")
+@pytest.mark.req("M-130")
+@pytest.mark.req("M-209", by="parsing")
 @pytest.mark.parametrize("number", [1, 2])
 def test_drive_latches_at_the_configured_input(make, recorder, number):
     settings = {
@@ -344,7 +346,7 @@ def test_drive_latches_at_the_configured_input(make, recorder, number):
     assert [one.acs_mm for one in result.measurements] == [100.0]
 
 
-@pytest.mark.req("M-033", "M-179", "M-183")
+@pytest.mark.req("M-033", "M-179", "M-183", "E-018", "E-019", "E-024")
 def test_program_switches_the_signal_and_back(make, face):
     """#MEAS [AXNR=3 SIGNAL=..] acts until #MEAS DEFAULT takes it back to the list."""
     bench = make(face | {"axis.Z.start_mm": 110.0, "axis.Z.kenngr.measure.signal": "PLC"})
@@ -401,12 +403,21 @@ def test_timestamp_unit_that_is_not_enabled_is_error_70689(make, face, probing, 
 
 
 @pytest.mark.req("M-181")
-def test_timestamp_from_before_the_run_is_error_50053(make, face, probing, errors):
+@pytest.mark.parametrize(
+    ("latch", "number"),
+    [
+        ("latch_pos - 300_000_000", 50053),  # the axis has a history there, and no run
+        ("latch_pos - 60_000_000_000", 70689),  # beyond the history
+        ("latch_neg", 70689),  # never latched: 0
+    ],
+)
+def test_timestamp_from_before_the_run_is_an_error(make, face, probing, errors, latch, number):
     """The PLC forwards a time that its terminal did not latch in this run."""
-    bench = make(face | {"axis.Z.start_mm": 110.0}, plc=[probing((3,), latch="latch_neg")])
+    bench = make(face | {"axis.Z.start_mm": 110.0}, plc=[probing((3,), latch=latch)])
+    bench.advance(1_000)
     result = bench.run("%p\nN10 G100 Z95 F6000\nN20 M30\n")
 
-    assert errors(result)[0][0] in (50053, 70689)
+    assert errors(result) == [(number, "Z", "N10")]
     assert not result.measurements
 
 
@@ -459,7 +470,6 @@ def test_stroke_of_the_probe_limits_the_feed(make, recorder, kind):
     assert [(one.id, one.severity) for one in result.errors] == ([] if kind == 1 else [(120213, "warning")])
 
 
-@pytest.mark.req("M-203", "M-204")
 @pytest.mark.parametrize("signal", ["PLC_EXT_LATCH_CONTROL", "PLC_FIRST_EVENT", "EXT_PROBE_WITH_DRIVE"])
 def test_source_that_is_not_built_says_so(make, signal):
     with pytest.raises(NotEmulated, match=signal):

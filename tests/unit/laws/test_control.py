@@ -188,6 +188,20 @@ def test_fixed_stop_criteria(rows, lag, limit, window, found):
     assert stop_found(rows, positions, lag, watches.fixed_stop(0, limit, window, 5, 0)) == found
 
 
+@pytest.mark.req("M-147", "M-233")
+def test_counting_starts_again_when_the_lag_falls_below_its_limit(rows):
+    """Four cycles above the limit, one below: the fifth and sixth above it are the first and second of anew."""
+    watch = Watches(rows.watch)
+    handle = watch.watch(watches.fixed_stop(0, 50.0, -1.0, 5, 0))
+    met = []
+    for cycle, lag in enumerate([60.0, 60.0, 60.0, 60.0, 40.0, *[60.0] * 6], start=1):
+        rows.axis[0]["lag"] = lag
+        ask_watches(rows.axis, rows.path, rows.watch, rows.history, cycle)
+        met.append(watch.met(handle))
+
+    assert met.index(True) + 1 == 10
+
+
 @pytest.mark.req("M-148", "M-151")
 @pytest.mark.parametrize(("done", "found"), [(99.0, None), (100.0, 3)])
 def test_fixed_stop_counts_only_behind_its_way(rows, done, found):

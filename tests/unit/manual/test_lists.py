@@ -257,6 +257,10 @@ def test_bound_at_its_default_is_a_warning() -> None:
         ("0x5", False),
         ("0x40", False),
         ("0x2", False),
+        ("0x3", False),
+        ("0x11", False),
+        ("0x20000001", False),
+        ("0", False),
     ],
 )
 def test_axis_mode(text: str, *, valid: bool) -> None:

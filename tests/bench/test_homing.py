@@ -14,6 +14,8 @@ CAM_EDGE_MM = -50.0
 PITCH_MM = 10.0
 ZERO_PULSE_MM = -55.0
 """Half a turn behind the cam's edge."""
+TO_THE_INCREMENT = 7e-5
+"""mm: two increments, and positions are told in whole tenths of a µm."""
 REFERENCE = -550_000
 SETTLE = 400
 FAST_UM, SLOW_UM = 50_000, 5_000
@@ -85,7 +87,7 @@ def test_three_phases_with_zero_pulse(make, recorder):
     assert result.completed, result.errors
     assert phases(recorder, X) == pytest.approx([-FAST_UM / 1e3, SLOW_UM / 1e3, -SLOW_UM / 1e3], abs=0.15)
     assert [(one.axis, one.position_mm, one.referenced) for one in result.homing] == [("X", -55.0, True)]
-    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=2e-5)
+    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=TO_THE_INCREMENT)
     done = bench.kernel.image.layout.element("ax/1/lr_state/homing_done_r").id
     assert bench.kernel.image.get(done)
 
@@ -102,7 +104,7 @@ def test_axis_stands_the_braking_distance_behind_its_reference(make, recorder, s
     braking = v * v / (2.0 * 1000.0)
 
     assert braking <= way <= braking + v * 0.003
-    assert truth_mm(bench, X) == pytest.approx(bench.position_mm("X"), abs=2e-5)
+    assert truth_mm(bench, X) == pytest.approx(bench.position_mm("X"), abs=TO_THE_INCREMENT)
 
 
 @pytest.mark.req("H-015", "H-016", "H-041", "H-157", "H-198")
@@ -112,7 +114,7 @@ def test_zero_pulse_reference_does_not_depend_on_the_speed(make, slow_um):
     assert home(bench).completed
     bench.advance(SETTLE)
 
-    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=2e-5)
+    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=TO_THE_INCREMENT)
 
 
 @pytest.mark.req("H-010", "H-014", "H-042", "H-050", "H-051", "H-157", "H-198")
@@ -163,7 +165,7 @@ def test_axis_on_the_cam_begins_with_phase_two(make, recorder):
 
     assert result.completed, result.errors
     assert phases(recorder, X) == pytest.approx([SLOW_UM / 1e3, -SLOW_UM / 1e3], abs=0.15)
-    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=2e-5)
+    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=TO_THE_INCREMENT)
 
 
 @pytest.mark.req("H-047", "H-161", "H-196")
@@ -185,7 +187,7 @@ def test_positive_homing_direction(make, recorder):
 
     assert result.completed, result.errors
     assert phases(recorder, X) == pytest.approx([FAST_UM / 1e3, -SLOW_UM / 1e3, SLOW_UM / 1e3], abs=0.15)
-    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=2e-5)
+    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=TO_THE_INCREMENT)
     assert bench.position_mm("X") > 55.0
 
 
@@ -200,7 +202,7 @@ def test_normally_closed_cam_is_told_by_its_level(make, recorder):
 
     assert result.completed, result.errors
     assert phases(recorder, X) == pytest.approx([-FAST_UM / 1e3, SLOW_UM / 1e3, -SLOW_UM / 1e3], abs=0.15)
-    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=2e-5)
+    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=TO_THE_INCREMENT)
 
 
 @pytest.mark.req("H-044")
@@ -403,7 +405,7 @@ def test_late_activation_takes_the_next_zero_pulse(make):
     assert home(bench).completed
     bench.advance(SETTLE)
 
-    assert bench.position_mm("X") - truth_mm(bench, X) == pytest.approx(PITCH_MM, abs=2e-5)
+    assert bench.position_mm("X") - truth_mm(bench, X) == pytest.approx(PITCH_MM, abs=TO_THE_INCREMENT)
 
 
 @pytest.mark.req("H-016")

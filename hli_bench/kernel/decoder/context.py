@@ -1,15 +1,20 @@
 """What the decoder of one program knows: axes, modal values, positions, measured values."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
+from typing import Final
 
 from hli_bench.base.errors import InputError
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.blocks import Block, Flush, Idle, MachineState, Source
 from hli_bench.kernel.decoder.configuration import DecoderAxis, DecoderDefaults
 from hli_bench.kernel.decoder.coordinates import Coordinates
+from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.measurements import Measurements
 from hli_bench.kernel.records import CncError
+from hli_bench.manual.errors import decoder as errors
 
+LARGEST_POSITION: Final = (2**31 - 1) * 1e-4
+"""mm or degrees: SGN32 in 0.1 um. Source: TF5200 programming manual, ranges of values."""
 Item = Block | Flush | CncError | Idle
 Steps = Generator[Item, MachineState | None, None]
 """What every command yields; a `Flush` is answered with a `MachineState`."""
@@ -59,6 +64,12 @@ class Context:
             raise InputError("a Flush must be answered with a MachineState", self.name, source.line)
         self.measurements.learn(state)
         self.coordinates.learn(state.command)
+
+    def check_format(self, target: Mapping[AxisIndex, float], source: Source) -> None:
+        """Raise CncStop for a position that the position format does not hold."""
+        for position in target.values():
+            if not -LARGEST_POSITION <= position <= LARGEST_POSITION:
+                raise CncStop(errors.COORDINATE_FORMAT, source, position)
 
     def moved(self) -> None:
         """Note that what the machine said last no longer holds."""

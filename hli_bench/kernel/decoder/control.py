@@ -10,6 +10,7 @@ from hli_bench.kernel.decoder.expressions import evaluate, is_true
 from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.text import BlockText, Lines, Scanner, read_block
 from hli_bench.kernel.decoder.variables import Slot, Variables, needs_flush
+from hli_bench.manual.dialect import BUILT, STATEMENTS, missing
 from hli_bench.manual.errors import decoder as errors
 
 if TYPE_CHECKING:
@@ -19,10 +20,9 @@ _WORD = re.compile(r"\$\s*([A-Z]+)", re.IGNORECASE)
 _JUMP = re.compile(r"\$\s*GOTO\b", re.IGNORECASE)
 _OPENING: Final = frozenset(("IF", "WHILE", "FOR", "DO", "REPEAT", "SWITCH"))
 _CLOSING: Final = frozenset(("ENDIF", "ENDWHILE", "ENDFOR", "ENDDO", "UNTIL", "ENDSWITCH"))
-_NOT_BUILT: Final = frozenset(
-    ("GOTO", "DO", "ENDDO", "REPEAT", "UNTIL", "SWITCH", "CASE", "DEFAULT", "ENDSWITCH")
-)
-_WORDS: Final = ("IF", "ELSEIF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "FOR", "ENDFOR", "BREAK", "CONTINUE")
+_WORDS: Final = tuple(word for word, what in STATEMENTS.items() if what == BUILT)
+MAX_NESTING: Final = 64
+"""Open control blocks (decided here; the manual names no number for P-ERR-20211)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +58,10 @@ class Control:
         """Decode the statement at the scanner."""
         found = scanner.match(_WORD)
         word = found.group(1).upper() if found else ""
-        if word in _NOT_BUILT or _JUMP.search(scanner.text):
-            raise scanner.not_emulated(f"${'GOTO' if word == 'IF' else word}: this statement is not built")
+        if found and missing(STATEMENTS, word):
+            raise scanner.not_emulated(f"${word}: {STATEMENTS[word]} not built", found.start())
+        if jump := _JUMP.search(scanner.text):
+            raise scanner.not_emulated(f"$GOTO: {STATEMENTS['GOTO']} not built", jump.start())
         if word not in _WORDS:
             raise scanner.error(
                 f"expected one of ${', $'.join(_WORDS)}, found {scanner.found()}", scanner.start
@@ -103,7 +105,7 @@ class Control:
 
     def _if(self, scanner: Scanner) -> Steps:
         opened = _Open("IF", scanner.block)
-        self._open.append(opened)
+        self._begin(opened)
         if not is_true(evaluate(scanner, self._memory, condition=True)):
             yield from self._read_over(opened, branches=True)
 
@@ -122,7 +124,7 @@ class Control:
 
     def _while(self, scanner: Scanner) -> Steps:
         loop = _Open("WHILE", scanner.block, self._lines.mark(), scanner.pos)
-        self._open.append(loop)
+        self._begin(loop)
         if not is_true(evaluate(scanner, self._memory, condition=True)):
             self._skip(loop, branches=False)
             self._leave()
@@ -153,7 +155,7 @@ class Control:
         if not step:
             raise scanner.error("$FOR: expected a step other than 0")
         loop = _Open("FOR", scanner.block, self._lines.mark(), 0, counter, last, step)
-        self._open.append(loop)
+        self._begin(loop)
         if not self._within(loop):
             self._skip(loop, branches=False)
             self._leave()
@@ -175,6 +177,11 @@ class Control:
             self._lines.rewind(loop.body)
         else:
             self._leave()
+
+    def _begin(self, opened: _Open) -> None:
+        if len(self._open) == MAX_NESTING:
+            raise CncStop(errors.NESTING_TOO_DEEP, opened.block.source)
+        self._open.append(opened)
 
     def _top(self, scanner: Scanner, word: str, by: str) -> _Open:
         if not self._open or self._open[-1].word != word:

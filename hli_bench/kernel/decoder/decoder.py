@@ -6,14 +6,16 @@ from typing import Final
 
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.blocks import Idle, Line, MachineState, Source
-from hli_bench.kernel.decoder.commands import COMMANDS, KNOWN
+from hli_bench.kernel.decoder.commands import COMMANDS
 from hli_bench.kernel.decoder.configuration import DecoderAxis, DecoderDefaults
 from hli_bench.kernel.decoder.context import Context, Item, Steps
 from hli_bench.kernel.decoder.control import Control
 from hli_bench.kernel.decoder.faults import CncStop
-from hli_bench.kernel.decoder.text import Lines, Scanner, read_block
+from hli_bench.kernel.decoder.text import MAX_LINE, Lines, Scanner, read_block, short
 from hli_bench.kernel.decoder.variables import Variables, needs_flush
 from hli_bench.kernel.decoder.words import WordReader
+from hli_bench.manual.dialect import COMMANDS as DIALECT
+from hli_bench.manual.dialect import SIGNS, missing
 from hli_bench.manual.errors import decoder as errors
 
 _PLAIN_WORDS = re.compile(r"([A-Za-z])([+-]?(?:[0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]{1,20}))|([^ \t\r\n])")
@@ -118,6 +120,8 @@ class Decoder:
     def _plain(self, raw: str) -> Line | _Other | None:
         """Decode a line of plain motion words in one go; nothing is changed unless all of it is plain."""
         context, axis_of = self._context, self._axis_of
+        if len(raw) > MAX_LINE:
+            return _OTHER
         number = ""
         rapid, absolute, feed = context.rapid, context.absolute, context.feed
         words: list[tuple[AxisIndex, float]] = []
@@ -166,6 +170,7 @@ class Decoder:
         target = where.move(words, absolute=absolute)
         if not target:
             return None
+        context.check_format(target, source)
         context.measurements.state = None
         return Line(source=source, rapid=rapid, feed=feed, target=target)
 
@@ -179,8 +184,6 @@ class Decoder:
         if first == "%":
             self._program_name(scanner)
             return
-        if first == "/":
-            raise scanner.not_emulated("/: skipping blocks is not built")
         if needs_flush(scanner.text, context):
             yield from context.flush(scanner.block.source)
         if first == "#":
@@ -192,7 +195,7 @@ class Decoder:
 
     def _program_name(self, scanner: Scanner) -> None:
         if scanner.match(_SUBROUTINE):
-            raise scanner.not_emulated("%L: subroutines not built")
+            raise scanner.not_emulated(f"%L: {SIGNS['%L']} not built", scanner.start)
         if self._named:
             raise CncStop(errors.PERCENT_IN_MAIN_PROGRAM, scanner.block.source)
         self._named = True
@@ -204,10 +207,10 @@ class Decoder:
         word = found.group(1).upper()
         command = COMMANDS.get(word)
         if command is None:
-            if word in KNOWN:
-                raise scanner.not_emulated(f"#{word}: {KNOWN[word]} not built", found.start())
+            if what := missing(DIALECT, word):
+                raise scanner.not_emulated(f"#{word}: {what} not built", found.start())
             raise scanner.error(
-                f"unknown command #{word}; expected one of #{', #'.join(COMMANDS)}", found.start()
+                f"unknown command #{short(word)}; expected one of #{', #'.join(COMMANDS)}", found.start()
             )
         yield from command(self._context, self._memory, scanner)
         if not scanner.at_end():

@@ -5,21 +5,26 @@ import re
 from collections.abc import Callable
 from typing import Final, Protocol
 
-from hli_bench.kernel.decoder.text import Scanner
+from hli_bench.kernel.decoder.text import Scanner, short
+from hli_bench.manual.dialect import FUNCTIONS as DIALECT
+from hli_bench.manual.dialect import OPERATORS, SIGNS, missing
 
 MAX_DEPTH: Final = 32
 """Nested brackets of one expression, decided here."""
 
-_NUMBER = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
+_NUMBER = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]{1,3})?")
+"""The exponent has a small letter: E is an address."""
 _WORD = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
 _OPERATOR = re.compile(
     r"(?P<compare>==|!=|<>|<=|>=|<|>|=)|(?P<add>[+-])|(?P<multiply>\*(?!\*)|/|MOD\b)"
     r"|(?P<either>\|\||OR\b)|(?P<both>&&|AND\b)",
     re.IGNORECASE,
 )
+_NOT_BUILT = re.compile(r"&|\^|\||XOR\b", re.IGNORECASE)
 _SIGN = re.compile(r"[+-]")
 _LITERAL = re.compile(
-    r"[+-]?(?:[0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]{1,20})(?=\s*(?:$|[\],]|[A-Z](?![A-Z])))", re.IGNORECASE
+    r"[+-]?(?:[0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]{1,20})(?=\s*(?:$|[\],]|(?!e[0-9+-])[A-Z](?![A-Z])))",
+    re.IGNORECASE,
 )
 """A number that no operator follows: by far the most frequent expression."""
 
@@ -137,6 +142,11 @@ class _Evaluation:
             before = scanner.pos
             found = scanner.match(_OPERATOR)
             if found is None:
+                if other := scanner.match(_NOT_BUILT):
+                    raise scanner.not_emulated(
+                        f"{other.group().upper()}: {OPERATORS[other.group().upper()]} not built",
+                        other.start(),
+                    )
                 return value
             binds = _BINDS[found.lastgroup or ""]
             word = found.group().upper()
@@ -188,12 +198,18 @@ class _Evaluation:
     def _function(self) -> float:
         scanner = self._scanner
         word = scanner.match(_WORD)
+        if word is None and (what := missing(SIGNS, scanner.peek())):
+            raise scanner.not_emulated(f"{scanner.found()}: {what} not built")
         if word is None:
             raise scanner.error(f"expected a number, a parameter or '[', found {scanner.found()}")
         name = word.group().upper()
         if name in _CONSTANTS:
             return _CONSTANTS[name]
         if name not in FUNCTIONS:
+            if what := missing(DIALECT, name):
+                raise scanner.not_emulated(f"{name}: {what} not built", word.start())
             known = ", ".join(FUNCTIONS)
-            raise scanner.error(f"expected a number or a function ({known}), found '{name}'", word.start())
+            raise scanner.error(
+                f"expected a number or a function ({known}), found '{short(name)}'", word.start()
+            )
         return float(FUNCTIONS[name](self._bracket()))

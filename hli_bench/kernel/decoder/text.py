@@ -11,13 +11,24 @@ from hli_bench.kernel.blocks import Source
 MAX_CONTINUED_LINES: Final = 64
 """Lines of one block, decided here: a forgotten ']' must not swallow a whole program."""
 
+MAX_LINE: Final = 4000
+"""Characters of a line. Source: TF5200 programming manual, chapter 2 (block length)."""
+SHOWN: Final = 40
+"""Characters of a word that a message repeats."""
+
 _MARK = re.compile(r'"[^"]*"?|[;(\[\]\\]')
+_SOLID = re.compile(r"\S")
 _COMMENT_MARK = re.compile(r"[()]")
 _BLANKS = re.compile(r"\s+")
 _NUMBER = re.compile(r"\s*(N[0-9]+)(?![0-9.]):?", re.IGNORECASE)
 _NEW_BLOCK = re.compile(r"\s*(?:N[0-9]|%)", re.IGNORECASE)
 _COMMENT_BEGIN = re.compile(r"\s*#\s*COMMENT\s+BEGIN\b", re.IGNORECASE)
 _COMMENT_END = re.compile(r"\s*(?:N[0-9]+\s*)?#\s*COMMENT\s+END\b", re.IGNORECASE)
+
+
+def short(word: str) -> str:
+    """Return a word for a message, cut when it is long."""
+    return word if len(word) <= SHOWN else f"{word[:SHOWN]}..."
 
 
 class Lines:
@@ -148,8 +159,8 @@ class Scanner:
 
     def not_emulated(self, what: str, at: int | None = None) -> NotEmulated:
         """Return a `NotEmulated` that names this place."""
-        line, _ = self.block.place(self.pos if at is None else at)
-        return NotEmulated(f"{self.block.file}:{line}: {what}")
+        line, column = self.block.place(self.pos if at is None else at)
+        return NotEmulated(f"{self.block.file}:{line}:{column}: {what}")
 
 
 @dataclass(slots=True)
@@ -190,8 +201,11 @@ def _join(lines: Lines, cleaned: _Cleaned, block: BlockText) -> BlockText:
             continue
         starts_new = _NEW_BLOCK.match(raw) is not None
         if (cleaned.brackets and not cleaned.continued and starts_new) or len(parts) == MAX_CONTINUED_LINES:
-            column = (cleaned.brackets or [0])[-1] + 1
-            raise InputError("expected ']' for this '['", block.file, opened, column)
+            if cleaned.brackets:
+                column = cleaned.brackets[-1] + 1
+                raise InputError("expected ']' for this '['", block.file, opened, column)
+            message = f"expected at most {MAX_CONTINUED_LINES} lines in a block"
+            raise InputError(message, block.file, lines.number)
         before = len(cleaned.brackets)
         cleaned = _clean(raw, block.file, lines.number, cleaned.brackets)
         if len(cleaned.brackets) > before:
@@ -209,32 +223,46 @@ def _clean(raw: str, file: str, line: int, brackets: list[int]) -> _Cleaned:
     text = raw.rstrip("\r\n\x03\x00")
     if text.lstrip().startswith("->"):
         return _Cleaned("", brackets, continued=False)
+    if len(text) > MAX_LINE:
+        raise InputError(f"expected at most {MAX_LINE} characters in a line, found {len(text)}", file, line)
     brackets = list(brackets)
-    pos = 0
+    kept: list[str] = []
+    begin = pos = 0
     while mark := _MARK.search(text, pos):
         token, pos = mark.group(), mark.end()
         if token[0] == '"' and (token == '"' or token[-1] != '"'):
             raise InputError("expected a closing quote for this text", file, line, mark.start() + 1)
         if token == ";":
-            return _Cleaned(text[: mark.start()], brackets, continued=False)
-        if token == "(":
+            text = text[: mark.start()]
+        elif token == "(":
             pos = _comment_end(text, pos)
-            text = text[: mark.start()] + " " * (pos - mark.start()) + text[pos:]
+            kept.append(text[begin : mark.start()] + " " * (pos - mark.start()))
+            begin = pos
         elif token == "[":
             brackets.append(mark.start())
         elif token == "]" and brackets:
             brackets.pop()
         elif token == "\\":
-            rest = _clean(text[pos:], file, line, []).text
-            if rest.strip():
-                column = pos + 1 + len(rest) - len(rest.lstrip())
-                raise InputError("expected the end of the line after '\\'", file, line, column)
-            return _Cleaned(text[: mark.start()], brackets, continued=True)
-    return _Cleaned(text, brackets, continued=False)
+            _nothing_behind(text, pos, file, line)
+            return _Cleaned("".join((*kept, text[begin : mark.start()])), brackets, continued=True)
+    return _Cleaned("".join((*kept, text[begin:])), brackets, continued=False)
+
+
+def _nothing_behind(text: str, pos: int, file: str, line: int) -> None:
+    """Raise InputError when anything but a comment stands behind the backslash before `pos`."""
+    while mark := _SOLID.search(text, pos):
+        if mark.group() == ";":
+            return
+        if mark.group() != "(":
+            raise InputError("expected the end of the line after '\\'", file, line, mark.start() + 1)
+        pos = _comment_end(text, mark.end())
 
 
 def _comment_end(text: str, pos: int) -> int:
-    """Return where the comment ends whose '(' stands before `pos`; comments nest."""
+    """Return where the comment ends whose '(' stands before `pos`: comments nest, an open one ends with the block.
+
+    Source: TF5200 programming manual, chapter 2.4.2.
+    """
     depth = 1
     while depth and (mark := _COMMENT_MARK.search(text, pos)):
         depth += 1 if mark.group() == "(" else -1

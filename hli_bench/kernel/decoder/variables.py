@@ -8,21 +8,20 @@ from hli_bench.kernel.decoder.context import Context
 from hli_bench.kernel.decoder.coordinates import rounded
 from hli_bench.kernel.decoder.expressions import evaluate
 from hli_bench.kernel.decoder.faults import CncStop
-from hli_bench.kernel.decoder.text import Scanner
+from hli_bench.kernel.decoder.text import Scanner, short
+from hli_bench.manual.dialect import AXIS_VARIABLES, BUILT, GLOBAL_VARIABLES, VARIABLE_AREAS, missing
 from hli_bench.manual.errors import decoder as errors
 from hli_bench.manual.errors.record import ErrorSheet
 
 _PARAMETER = re.compile(r"(P+)([0-9]{1,9}|(?=\[))", re.IGNORECASE)
-_VARIABLE = re.compile(r"V\.([A-Z]+)\.([A-Z_][A-Z0-9_]*(?:\.[A-Z_][A-Z0-9_]*)*)", re.IGNORECASE)
+_VARIABLE = re.compile(r"V\.([A-Z_]+)\.([-+@]?[A-Z_][A-Z0-9_]*(?:\.[A-Z_][A-Z0-9_]*)*)", re.IGNORECASE)
+MAX_VALUES: Final = 10_000
+"""Parameters and own variables of a program (decided here): one that never ends must not fill the memory."""
 _OWN: Final = frozenset("PLSE")
 """Own variables. V.E. is kept by the program alone: the PLC does not see it yet."""
 
 _NEED_VALUE: Final = frozenset(("MESS", "MOFFS", "MEAS.ACS.VALUE", "MEAS.PCS.VALUE"))
 _READS: Final = _NEED_VALUE | {"ABS", "PROG", "ACS.ABS", "ACT_POS", "MEIN", "BZP", "RERF", "MERF"}
-_NOT_YET: Final = frozenset(
-    ("MENT", "REF", "PZV", "SOFFS", "MANUAL_OFFSETS", "ACS.ACT_POS", "LOG_AX_NR", "WCS.ABS", "MCS.ABS")
-)
-_NOT_YET_AREAS: Final = frozenset(("SPDL", "CYC", "TOOL", "TLM", "RTG", "RTA", "I", "G", "C"))
 
 _STRING = re.compile(r'"[^"]*"')
 _FROM_MACHINE = re.compile(r"V\.A\.(?:MESS|MERF|MOFFS|MEAS\.|ACT_POS|RERF)", re.IGNORECASE)
@@ -94,7 +93,10 @@ class Variables:
 
     def assign(self, scanner: Scanner) -> Slot:
         """Take `name = expression`, keep the value and return where."""
+        start = scanner.pos
         slot = self._slot(scanner)
+        if len(self._values) >= MAX_VALUES and slot not in self._values:
+            raise scanner.error(f"expected at most {MAX_VALUES} parameters and variables in a program", start)
         scanner.expect("=")
         self._values[slot] = evaluate(scanner, self)
         return slot
@@ -128,7 +130,7 @@ class Variables:
         area, name = self._variable(scanner)
         if area in _OWN:
             return self._own_key(scanner, area, name)
-        if area in ("A", "G"):
+        if area == "A" or (area == "G" and GLOBAL_VARIABLES.get(name) == BUILT):
             raise self._stop(scanner, errors.VARIABLE_WRITE_DENIED, f"V.{area}.{name}")
         raise self._unknown(scanner, area, name, start)
 
@@ -187,8 +189,8 @@ class Variables:
             if axis is None:
                 raise self._stop(scanner, errors.VARIABLE_UNKNOWN_AXIS, f"V.A.{name}.{axis_name}")
             index = axis.index
-        if name in _NOT_YET:
-            raise scanner.not_emulated(f"V.A.{name}: this variable has no value here yet", start)
+        if what := missing(AXIS_VARIABLES, name):
+            raise scanner.not_emulated(f"V.A.{name}: {what} not built", start)
         if name not in _READS or not self._context.path_axis(index):
             raise self._stop(scanner, errors.UNKNOWN_VARIABLE, f"V.A.{name}")
         return self._note(name, index)
@@ -237,8 +239,11 @@ class Variables:
         return rounded(where.from_acs(values.state.actual)[axis] - where.applied[axis])
 
     def _unknown(self, scanner: Scanner, area: str, name: str, at: int) -> Exception:
-        if area in _NOT_YET_AREAS:
-            return scanner.not_emulated(f"V.{area}.{name}: this variable has no value here yet", at)
+        what = missing(VARIABLE_AREAS, area)
+        if area == "G":
+            what = missing(GLOBAL_VARIABLES, name) or missing(GLOBAL_VARIABLES, name.partition(".")[0])
+        if what:
+            return scanner.not_emulated(f"V.{area}.{short(name)}: {what} not built", at)
         return self._stop(scanner, errors.UNKNOWN_VARIABLE, f"V.{area}.{name}")
 
     def _stop(self, scanner: Scanner, sheet: ErrorSheet, variable: str) -> CncStop:

@@ -12,16 +12,26 @@ from hli_bench.kernel.decoder.context import Context, Steps
 from hli_bench.kernel.decoder.coordinates import rounded
 from hli_bench.kernel.decoder.expressions import evaluate
 from hli_bench.kernel.decoder.faults import CncStop
-from hli_bench.kernel.decoder.text import Scanner
+from hli_bench.kernel.decoder.text import Scanner, short
 from hli_bench.kernel.decoder.variables import Variables
+from hli_bench.manual.dialect import (
+    AXIS_COMMANDS,
+    BUILT,
+    G_FUNCTIONS,
+    LETTERS,
+    M_FUNCTIONS,
+    SIGNS,
+    TECHNOLOGY,
+    missing,
+)
 from hli_bench.manual.errors import decoder as errors
 
 _G_WORD = re.compile(r"G([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE)
 _M_WORD = re.compile(r"M([0-9]+)", re.IGNORECASE)
 _LETTERS = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
-_AXIS_KEYWORD = re.compile(
-    r"\s*\[\s*(INDP_SYN|INDP_ASYN|FIXED_STOP|OSC|LIFT\w*|COUPLE|DIST_CTRL|PUNCH|OFFSET)\b", re.IGNORECASE
-)
+_ADDRESS = re.compile(r"[A-Z][0-9]*|LL|LV")
+_AXIS_COMMAND = re.compile(rf"\s*\[\s*(MC_\w+|[MGH][0-9]+|{'|'.join(AXIS_COMMANDS)})\b", re.IGNORECASE)
+_BUILT: Final = tuple(f"G{name[1:]:0>2}" for name, what in G_FUNCTIONS.items() if what == BUILT)
 
 TAKING_AXES: Final = frozenset((74, 92, 100, 101, 102))
 """G functions that give the axis words of their block another meaning than a position to move to."""
@@ -34,57 +44,6 @@ FEED_FROM_AXIS: Final = 2
 
 IN_FORCE: Final = frozenset((17, 40, 71, 94))
 """G functions that select what is in force anyway: plane XY, no radius compensation, mm, feed per minute."""
-
-NOT_BUILT: Final = {
-    "G2": "circles",
-    "G3": "circles",
-    "G18": "other planes",
-    "G19": "other planes",
-    "G20": "mirroring",
-    "G21": "mirroring",
-    "G22": "mirroring",
-    "G33": "thread cutting",
-    "G41": "tool radius compensation",
-    "G42": "tool radius compensation",
-    "G53": "zero offsets",
-    "G54": "zero offsets",
-    "G55": "zero offsets",
-    "G56": "zero offsets",
-    "G57": "zero offsets",
-    "G58": "zero offsets",
-    "G59": "zero offsets",
-    "G60": "exact stop",
-    "G61": "smoothing",
-    "G63": "tapping",
-    "G70": "inch",
-    "G75": "homing by drive",
-    "G93": "feed by time",
-    "G95": "feed per turn",
-    "G106": "travelling on to the target in measurement type 3",
-    "G107": "edge banding",
-    "G108": "edge banding",
-    "G150": "splines",
-    "G151": "splines",
-    "G210": "measuring with a jump",
-    "G260": "smoothing",
-    "G261": "smoothing",
-    "G310": "measuring with a jump",
-    "M0": "stopping for the operator",
-    "M1": "optional stop",
-    "M17": "subroutines",
-    "M29": "subroutines",
-    "L": "subroutines",
-    "S": "spindles",
-    "T": "tools",
-    "D": "tools",
-    "H": "technology functions",
-    "I": "circles",
-    "J": "circles",
-    "K": "circles",
-    "R": "circles",
-    "E": "feed at the end of a block",
-}
-"""Words of the dialect that not built, with what is missing."""
 
 
 @dataclass(slots=True)
@@ -176,9 +135,9 @@ class WordReader:
         axis = self._context.by_name[found.group(1).upper()]
         if axis.kind == "S" and not homing:
             raise scanner.not_emulated(f"{axis.name}: spindles not built", found.start())
-        if keyword := _AXIS_KEYWORD.match(scanner.text, scanner.pos):
+        if command := _AXIS_COMMAND.match(scanner.text, scanner.pos):
             raise scanner.not_emulated(
-                f"{axis.name}[{keyword.group(1).upper()} ...]: axis commands not built", found.start()
+                f"{axis.name}[{command.group(1).upper()} ...]: axis commands not built", found.start()
             )
         scanner.accept("=")
         if scanner.at_end():
@@ -197,24 +156,28 @@ class WordReader:
             return
         if found := scanner.match(_M_WORD):
             name = f"M{int(found.group(1)[:9])}"
-            if name not in ("M2", "M30"):
-                what = NOT_BUILT.get(name, "technology functions")
-                raise scanner.not_emulated(f"{found.group().upper()}: {what} not built", start)
+            if what := M_FUNCTIONS.get(name, TECHNOLOGY):
+                raise scanner.not_emulated(f"{short(found.group()).upper()}: {what} not built", start)
             words.end = True
             return
         raise self._unknown(scanner, start)
 
     def _unknown(self, scanner: Scanner, start: int) -> BenchError:
+        sign = scanner.peek()
+        if what := missing(SIGNS, sign):
+            return scanner.not_emulated(f"{scanner.found()}: {what} not built", start)
         found = scanner.match(_LETTERS)
         if found is None:
             return scanner.error(f"expected a word such as G01, F1000 or X10, found {scanner.found()}", start)
         word = found.group().upper()
-        if word[0] in NOT_BUILT and (len(word) == 1 or word[1].isdigit()):
-            return scanner.not_emulated(f"{word}: {NOT_BUILT[word[0]]} not built", start)
+        if _ADDRESS.fullmatch(word) and (what := missing(LETTERS, word[0])):
+            return scanner.not_emulated(f"{short(word)}: {what} not built", start)
         axes = ", ".join(self._context.by_name)
         if word[0] == "N" and word[1:].isdigit():
-            return scanner.error(f"expected the block number {word} at the beginning of its block", start)
-        return scanner.error(f"expected a G, F, M or axis word (axes {axes}), found '{word}'", start)
+            return scanner.error(
+                f"expected the block number {short(word)} at the beginning of its block", start
+            )
+        return scanner.error(f"expected a G, F, M or axis word (axes {axes}), found '{short(word)}'", start)
 
 
 def _g_number(scanner: Scanner, found: re.Match[str]) -> int:
@@ -223,11 +186,9 @@ def _g_number(scanner: Scanner, found: re.Match[str]) -> int:
     number = int(name[1:]) if name[1:].isdigit() and len(name) < 6 else -1
     if number in TAKING_AXES or number in IN_FORCE or number in (0, 1, 90, 91):
         return number
-    if name in NOT_BUILT:
-        raise scanner.not_emulated(f"{written}: {NOT_BUILT[name]} not built", found.start())
-    raise scanner.error(
-        f"expected G00, G01, G04, G74, G90, G91, G92, G100, G101 or G102, found '{written}'", found.start()
-    )
+    if what := missing(G_FUNCTIONS, name):
+        raise scanner.not_emulated(f"{written}: {what} not built", found.start())
+    raise scanner.error(f"expected one of {', '.join(_BUILT)}, found '{short(written)}'", found.start())
 
 
 def _modal(context: Context, words: Words, scanner: Scanner) -> None:
@@ -251,6 +212,7 @@ def _line(context: Context, words: Words, scanner: Scanner) -> Steps:
         raise scanner.error("no feed (F) programmed for G01", words.at)
     yield from _positions(context, words, scanner)
     target = context.coordinates.move(words.axes, absolute=context.absolute)
+    context.check_format(target, scanner.block.source)
     if target:
         context.moved()
         yield Line(source=scanner.block.source, rapid=context.rapid, feed=context.feed, target=target)
@@ -267,6 +229,7 @@ def _measuring_run(context: Context, words: Words, scanner: Scanner) -> Steps:
     moving = where.move(words.axes, absolute=context.absolute)
     programmed = [axis for axis, _ in words.axes]
     target = where.axis_target(programmed)
+    context.check_format(target, scanner.block.source)
     together = (where.main or ()) if where.frame is not None else ()
     context.measurements.begin(target)
     where.forget(list(target), keep_programmed=True)

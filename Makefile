@@ -8,10 +8,12 @@ SHELL := /bin/bash
 BIN := .venv/bin
 # VCAN=no leaves the SocketCAN tests out of `make test`, for a computer that can offer no vcan at all.
 VCAN ?= yes
+# How many inputs of each kind `make fuzz` tries.
+FUZZ ?= 20000
 # How many processes share the tests.
 WORKERS ?= 2
 
-.PHONY: help run test lint pytest test-vcan coverage-req mutants bench lock clean
+.PHONY: help run test lint pytest test-vcan fuzz coverage-req mutants bench lock clean
 
 help: ## Lists the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -33,6 +35,9 @@ lint: .venv/.dev ## Lint, format, types, import contracts
 pytest: .venv/.dev ## The tests that need no CAN interface
 	$(BIN)/python -m pytest -m "not vcan" -n $(WORKERS) --dist loadfile --ignore tests/shells tests
 	$(BIN)/python -m pytest -m "not vcan" tests/shells  # in real pace too: no other tests beside them
+
+fuzz: .venv/.dev ## Spoilt inputs of every kind, FUZZ=N of each (default 20000)
+	HLI_BENCH_FUZZ=$(FUZZ) $(BIN)/python -m pytest tests/fuzz
 
 test-vcan: .venv/.dev ## The tests on a real SocketCAN vcan0, in a virtual machine where the host has none
 	tools/vcan_vm.sh $(BIN)/python -m pytest -m vcan tests/vcan

@@ -73,6 +73,8 @@ def toml_tree(text: str, file: str) -> dict[str, object]:
         raise InputError(f"not valid TOML: {message}", file, line, column) from error
     except RecursionError as error:
         raise InputError("not valid TOML: nested too deeply", file) from error
+    except ValueError as error:  # of Python, for a number of more than 4300 digits
+        raise InputError(f"not valid TOML: {error}", file) from error
 
 
 def line_numbers(text: str) -> dict[str, int]:
@@ -125,7 +127,7 @@ def toml_value(text: str) -> object:
     """Return the text as a TOML value, or as it is."""
     try:
         tree = tomllib.loads(f"value = {text}")
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):
         return text
     return tree["value"] if len(tree) == 1 else text
 

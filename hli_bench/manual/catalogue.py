@@ -12,7 +12,7 @@ from typing import Any, Final, cast
 from hli_bench.base.errors import InputError
 from hli_bench.manual.sheet import LIMITS, Entry, Sheet, Value, entries
 
-INDEX: Final = re.compile(r"\[\s*(\d+)\s*\]")
+INDEX: Final = re.compile(r"\[\s*(\d{1,9})\s*\]")
 PLACEHOLDER: Final = re.compile(r"\[[ijk]\]")
 WORDS_OF_TRUTH: Final = MappingProxyType({"0": False, "1": True, "FALSE": False, "TRUE": True})
 

@@ -298,6 +298,18 @@ class TraceFile:
         self._channels[topic] = self._writer.register_channel(topic, _PACKED if packed else "json", schema)
 
 
+DAMAGED: Final = (
+    McapError,
+    ZstdError,
+    CRCValidationError,
+    ValueError,
+    LookupError,
+    OverflowError,
+    MemoryError,
+)
+"""What reading raises for bytes that nobody has written: the library takes lengths and numbers as they stand."""
+
+
 def _json(value: object) -> bytes:
     return json.dumps(value, sort_keys=True, separators=(",", ":")).encode()
 
@@ -360,8 +372,12 @@ class TraceReader:
                 elif isinstance(record, Channel):
                     channels[record.id] = record
                 elif isinstance(record, Message):
-                    channel = channels[record.channel_id]
-                    yield _decoded(record, channel.topic, schemas[channel.schema_id])
+                    try:
+                        channel = channels[record.channel_id]
+                        entry = _decoded(record, channel.topic, schemas[channel.schema_id])
+                    except (*DAMAGED, StructError, TypeError) as error:
+                        raise self._error(f"damaged in front of byte {file.tell()}: {error}") from error
+                    yield entry
 
     def _records(self, file: BinaryIO) -> Iterator[McapRecord]:
         """Yield records up to the end of the data; note when the file ends in front of it."""
@@ -372,7 +388,7 @@ class TraceReader:
                 yield record
         except (EndOfFile, StructError):
             self.torn = True
-        except (McapError, ZstdError, CRCValidationError, UnicodeDecodeError, MemoryError) as error:
+        except DAMAGED as error:
             raise self._error(f"damaged in front of byte {file.tell()}: {error}") from error
 
     def _error(self, message: str) -> InputError:

@@ -51,6 +51,11 @@ class Measuring:
         self._end()
         return True
 
+    def cut(self) -> bool:
+        """Brake and measure no more (delete distance to go); tell whether the run was on its way."""
+        self._run.cut = self._sequence.phase == "running"
+        return self._run.cut
+
     def abort(self) -> None:
         """Switch the sources off; what was latched counts."""
         self._sequence.abort()

@@ -119,9 +119,13 @@ Block = Line | MeasuringRun | Home | Text | DriveWrite | MeasureSettings | Dwell
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flush:
-    """A query: execute everything before it, then answer with `MachineState`."""
+    """A query: execute everything before it, then answer with `MachineState`.
+
+    `takes_positions`: the program goes on from where the axes stand.
+    """
 
     source: Source
+    takes_positions: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

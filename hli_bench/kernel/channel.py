@@ -28,6 +28,7 @@ from hli_bench.kernel.drive_manager.objects import ObjectChannel
 from hli_bench.kernel.drive_manager.probe_telegrams import DRIVE_INPUTS, ProbeTelegrams
 from hli_bench.kernel.hindrances import unserved
 from hli_bench.kernel.monitoring import Monitoring
+from hli_bench.kernel.path_blocks import PathBlocks
 from hli_bench.kernel.position_controller import measurement
 from hli_bench.kernel.position_controller.measuring_rules import Probe, default_probe, take_settings
 from hli_bench.kernel.records import CncError, MeasuredValue, MessageText, Unmeasured
@@ -81,14 +82,20 @@ class Channel:
         self._unserved: dict[AxisIndex, list[str]] = {}
         """Units that no PLC served when the measuring run of an axis began, and why."""
         self._source = _NOWHERE
-        self._segment_source: dict[int, Source] = {}
+        self._path = PathBlocks(core)
         self.running = False
         self.completed = False
 
     @property
     def source(self) -> Source:
         """The block in execution."""
-        return self._segment_source.get(self._core.path.segment, self._source)
+        return self._path.source or self._source
+
+    def delete_distance_to_go(self, *, on: bool) -> bool:
+        """Drop the rest of the block in motion; tell whether there is one to be dropped."""
+        if isinstance(self._activity, Measuring):
+            return on and self._activity.cut()
+        return self._path.delete_distance_to_go(on=on)
 
     def start(self, decoder: Decoder) -> None:
         """Begin a program."""
@@ -98,7 +105,7 @@ class Channel:
         self._answer = None
         self._barrier = self._postponed = self._activity = None
         self._texts.clear()
-        self._segment_source.clear()
+        self._path.forget()
         self._measured.clear()
         self._latched.clear()
         self._delivered.clear()
@@ -119,9 +126,10 @@ class Channel:
         self._wake.clear()
         if not self.running:
             return
-        if self._has_failed():
+        if self._core.failed:
             self._stop()
             return
+        self._path.cut(self._texts)
         self._hand_out_texts()
         for _ in range(STEPS):
             if not (self.running and self._proceed()):
@@ -176,19 +184,25 @@ class Channel:
         if self._postponed is not None:
             return self._put(self._postponed)
         if self._barrier is not None:
-            if not self._core.path.idle:
-                self._wait_for_rest()
-                return False
-            self._hand_out_texts()
-            if isinstance(self._barrier, MeasuringRun) and not self._may_measure(self._barrier):
-                self._go_on_in_next_cycle()
-                return False
-            barrier, self._barrier = self._barrier, None
-            self._behind_motion(barrier)
-            return True
+            return self._at_barrier(self._barrier)
         if len(self._texts) == TEXTS:
             return False
         return self._next_item()
+
+    def _at_barrier(self, barrier: Item) -> bool:
+        """Execute a block once all motion before it is done; False when it has to wait."""
+        if not self._core.path.idle:
+            self._wait_for_rest()
+            return False
+        self._hand_out_texts()
+        if self._path.settle(barrier):
+            return True
+        if isinstance(barrier, MeasuringRun) and not self._may_measure(barrier):
+            self._go_on_in_next_cycle()
+            return False
+        self._barrier = None
+        self._behind_motion(barrier)
+        return True
 
     def _next_item(self) -> bool:
         assert self._items is not None
@@ -220,17 +234,13 @@ class Channel:
     def _put(self, line: Line) -> bool:
         if self._core.preparation.room == 0:
             self._postponed = line
-            refill = int(self._core.rows.path[0]["tail"]) - REFILL
-            self._wake.append(self._core.watches.watch(segment_reached(refill)))
+            self._wake.append(self._core.watches.watch(segment_reached(self._core.path.tail - REFILL)))
             return False
         self._postponed = None
         self._source = line.source
         if not self._may_move(line.source, line.target):
             return True
-        number = self._core.preparation.line(line)
-        if number is not None:
-            self._segment_source.pop(number - SEGMENTS, None)
-            self._segment_source[number] = line.source
+        self._path.put(line)
         return True
 
     def _behind_motion(self, item: Item) -> None:
@@ -238,7 +248,7 @@ class Channel:
         core = self._core
         assert not isinstance(item, Line | Text | MeasureSettings | CncError | Idle)
         self._source = item.source
-        self._segment_source.clear()
+        self._path.forget()
         match item:
             case Flush():
                 self._answer = self._state()
@@ -358,6 +368,7 @@ class Channel:
             self._items.close()
         self._items = None
         self._activity = None
+        self._path.abandon()
         self.running = False
         self.completed = completed
 

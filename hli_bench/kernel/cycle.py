@@ -18,13 +18,15 @@ from hli_bench.kernel.setup import KernelSetup
 from hli_bench.laws.rows import KernelRows
 from hli_bench.manual.errors import hli as hli_errors
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
-from hli_bench.protocols.hli.image import Image
+from hli_bench.protocols.hli.image import Image, Value
 from hli_bench.protocols.hli.layout import layout_of
 from hli_bench.wire.can import CanFrame
 
 _TYPE_NUMBER = {"T": 1, "R": 2, "S": 4}
 _LAYOUT_KIND = {"T": "linear", "R": "rotary", "S": "spindle"}
 FULL_OVERRIDE = 1000
+DEFAULTS = {"release_feedhold": True, "override": FULL_OVERRIDE, "override_feedrate": FULL_OVERRIDE}
+"""What holds while no PLC commands it, by the last part of a unit's path."""
 
 
 class Kernel:
@@ -34,8 +36,7 @@ class Kernel:
         self.setup = setup
         axes = [(axis.number, axis.name, _LAYOUT_KIND[axis.kind]) for axis in setup.axes]
         self.image = Image(layout_of(tuple(axes)))
-        defaults = {"release_feedhold": True, "override": FULL_OVERRIDE}
-        units = ControlUnits(self.image, defaults)
+        units = ControlUnits(self.image, DEFAULTS)
         self.core = Core.build(setup, self.image, units)
         self._monitoring = Monitoring(self.core)
         self.drives = DriveManager(self.core, self._monitoring)
@@ -124,32 +125,40 @@ class Kernel:
         return self.channel.source
 
     def _unit_changed(self, unit: ControlUnit) -> None:
-        """A PLC changed a unit that acts by itself; probing and homing ask theirs when they need them."""
+        """A PLC changed a unit: act, acknowledge what is in effect; some are asked by who needs them."""
         area, number, name = unit.path.split("/", 2)
-        unit.acknowledge(unit.effective)
         if area == "ch":
-            self._channel_unit_changed(name, unit)
-            return
-        index = next(axis.index for axis in self.setup.axes if axis.number == int(number))
-        if name in ("lr_mc_control/release_feedhold", "ipo_mc_control/feedhold"):
-            released = self.core.unit(index, "lr_mc_control/release_feedhold").effective
-            held = self.core.unit(index, "ipo_mc_control/feedhold").effective
-            self.core.row(index)["released"] = bool(released) and not held
-        elif name == "lr_mc_control/probing_signal":
-            self.core.show(index, "lr_state/probe_actuated_r", unit.redirected and bool(unit.effective))
+            unit.acknowledge(self._channel_unit_changed(name, unit))
+        else:
+            index = next(axis.index for axis in self.setup.axes if axis.number == int(number))
+            unit.acknowledge(self._axis_unit_changed(index, name, unit))
 
-    def _channel_unit_changed(self, name: str, unit: ControlUnit) -> None:
+    def _axis_unit_changed(self, index: AxisIndex, name: str, unit: ControlUnit) -> Value:
+        """Act; return what is in effect now. The override of an axis acts in none of its motions that are built."""
+        core = self.core
+        if name in ("lr_mc_control/release_feedhold", "ipo_mc_control/feedhold"):
+            released = core.unit(index, "lr_mc_control/release_feedhold").effective
+            held = core.unit(index, "ipo_mc_control/feedhold").effective
+            core.row(index)["released"] = bool(released) and not held
+        elif name == "lr_mc_control/probing_signal":
+            core.show(index, "lr_state/probe_actuated_r", unit.redirected and bool(unit.effective))
+        elif name == "ipo_mc_control/override":
+            return FULL_OVERRIDE
+        elif name == "ipo_mc_control/override_valid":
+            return False
+        return unit.effective
+
+    def _channel_unit_changed(self, name: str, unit: ControlUnit) -> Value:
+        """Act; return what is in effect now."""
         if name == "bahn_mc_control/feedhold":
             self.core.path.hold(on=bool(unit.effective))
-        elif name in ("bahn_mc_control/override", "bahn_mc_control/override_valid"):
-            valid = self.core.units["ch/1/bahn_mc_control/override_valid"]
-            value = (
-                self.core.units["ch/1/bahn_mc_control/override"].effective
-                if valid.effective
-                else FULL_OVERRIDE
-            )
-            largest = self.setup.channel.max_vb_override
-            self.core.path.override(min(int(value), largest) / FULL_OVERRIDE)
+        elif name == "bahn_mc_control/delete_distance_to_go":
+            return self.channel.delete_distance_to_go(on=bool(unit.effective))
+        elif name == "bahn_mc_control/override_feedrate":
+            value = min(int(unit.effective), self.setup.channel.max_vb_override)
+            self.core.path.override(value / FULL_OVERRIDE)
+            return value
+        return unit.effective
 
     def _show_heads(self) -> None:
         for axis in self.setup.axes:

@@ -3,9 +3,12 @@
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.position_controller.probing import source
-from hli_bench.laws.rows import JOG, SEGMENTS
+from hli_bench.laws.rows import FEEDHOLD, JOG, SEGMENTS
+from hli_bench.protocols.hli.control_unit import ControlUnit
 
 _CHANNEL = "ch/1/bahn_mc_control"
+_WITHOUT_EFFECT = ("ipo_mc_control/override", "ipo_mc_control/override_valid")
+_WHY = "it acts on independent axes and spindles only; path and homing take ch/1/bahn_mc_control/override_feedrate"
 
 
 def holding(core: Core) -> list[str]:
@@ -16,10 +19,11 @@ def holding(core: Core) -> list[str]:
     if not core.path.idle:
         leg = core.rows.leg[core.path.segment % SEGMENTS]
         moves = [one or bool(of_path) for one, of_path in zip(moves, leg["moves"], strict=True)]
-        if path["hold"]:
+    if any(moves):
+        if path["hold"] & FEEDHOLD:
             found.append(f"{_CHANNEL}/feedhold is TRUE")
         if not path["override"]:
-            found.append(f"{_CHANNEL}/override is 0")
+            found.append(f"{_CHANNEL}/override_feedrate is 0")
     for axis in core.setup.axes:
         if not moves[axis.index] or axes[axis.index]["released"]:
             continue
@@ -31,7 +35,8 @@ def holding(core: Core) -> list[str]:
 
 def unheard(core: Core) -> list[str]:
     """Return the control units with `enable_w` TRUE whose commands count for nothing, and why."""
-    return [f"{unit.path}: {unit.unheard}" for unit in core.units.enabled() if unit.unheard]
+    enabled = ((unit.path, _unheard(unit)) for unit in core.units.enabled())
+    return [f"{path}: {why}" for path, why in enabled if why]
 
 
 def unserved(core: Core, axis: AxisIndex, signal: str) -> list[str]:
@@ -46,4 +51,9 @@ def in_vain(core: Core, member: str) -> str:
     if element.member not in ("enable_w", "command_w") or element.group not in core.units:
         return ""
     unit = core.units[element.group]
-    return "" if element.member == "enable_w" and not unit.enabled else unit.unheard
+    return "" if element.member == "enable_w" and not unit.enabled else _unheard(unit)
+
+
+def _unheard(unit: ControlUnit) -> str:
+    """Return why the command of a unit counts for nothing, "" when it does."""
+    return unit.unheard or (_WHY if unit.path.endswith(_WITHOUT_EFFECT) else "")

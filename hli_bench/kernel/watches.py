@@ -37,6 +37,11 @@ def path_done() -> Condition:
     return Condition(kind=law.W_PATH_DONE)
 
 
+def path_stands() -> Condition:
+    """The path stands: held, or at its end."""
+    return Condition(kind=law.W_PATH_STANDS)
+
+
 def segment_reached(number: int) -> Condition:
     """The interpolator has begun segment `number`."""
     return Condition(kind=law.W_SEGMENT, limit=float(number))

@@ -7,6 +7,7 @@ from hli_bench.laws.integers import wrap32
 from hli_bench.laws.profile import advance, ramp
 from hli_bench.laws.rows import (
     BRAKE,
+    FEEDHOLD,
     FOLLOW,
     HISTORY_CYCLES,
     IDLE,
@@ -23,6 +24,7 @@ from hli_bench.laws.rows import (
     W_MOVED,
     W_NONE,
     W_PATH_DONE,
+    W_PATH_STANDS,
     W_PROBE_STATUS,
     W_SEGMENT,
     W_STANDSTILL_LAG_OVER,
@@ -73,6 +75,8 @@ def holds(one: Row, path: Row, row: Row, cycle: int) -> bool:
         return cycle >= row["limit"]
     if kind == W_PATH_DONE:
         return path["state"] == IDLE
+    if kind == W_PATH_STANDS:
+        return path["v"] <= 0.0 or path["state"] == IDLE
     if kind == W_SEGMENT:
         return path["head"] >= row["limit"] or path["state"] == IDLE
     if kind == W_JOG_STOPPED:
@@ -135,7 +139,7 @@ def sense(axis: Rows, path: Rows, watch: Rows, history: Rows, cycle: int) -> int
 
 @law
 def path_held(axis: Rows, path: Row, leg: Rows, slot: int) -> bool:
-    """Tell whether the path must stand: feedhold of the channel, or an axis it moves is not released."""
+    """Tell whether the path must stand: feedhold of the channel, a short cut, or an axis it moves is not released."""
     if path["hold"]:
         return True
     for number in range(axis.shape[0]):
@@ -214,7 +218,9 @@ def act(axis: Rows, path: Rows, segment: Rows, leg: Rows, cycle_ns: int) -> None
                 row["command"] = way["start"] + way["direction"] * path[0]["s"]
             row["velocity"] = (row["command"] - before) / time
         elif mode == JOG:
-            wanted = row["jog_velocity"] if row["released"] else 0.0
+            wanted = 0.0
+            if row["released"] and path[0]["hold"] & FEEDHOLD == 0:
+                wanted = row["jog_velocity"] * min(path[0]["override"], 1.0)
             way, v = ramp(row["velocity"], wanted, row["jog_acceleration"], time)
             row["command"] = before + way
             row["velocity"] = v

@@ -41,6 +41,10 @@ IDLE: Final = 0
 RUN: Final = 1
 BRAKE: Final = 2
 
+# What makes the path stand (bits of PATH_ROW["hold"])
+FEEDHOLD: Final = 1
+SHORT_CUT: Final = 2
+
 # Watch kinds (WATCH["kind"]); no row behind a W_NONE is in use, a W_FREE is a gap
 W_NONE: Final = 0
 W_PATH_DONE: Final = 1
@@ -57,6 +61,7 @@ W_STANDSTILL_LAG_OVER: Final = 11
 W_MOVED: Final = 12
 W_FREE: Final = 13
 W_STATUSWORD_LEFT: Final = 14
+W_PATH_STANDS: Final = 15
 
 AXIS: Final = np.dtype(
     [
@@ -198,7 +203,7 @@ PATH_ROW: Final = np.dtype(
         ("s", "f8"),  # path done in the running segment, 0.1 um
         ("v", "f8"),  # path velocity, 0.1 um/s
         ("override", "f8"),
-        ("hold", "u1"),
+        ("hold", "u1"),  # bits: FEEDHOLD, which holds axes that move by themselves too, SHORT_CUT
         ("brake", "f8", (2,)),  # deceleration below / above `brake_split` while state is BRAKE
         ("brake_split", "f8"),
     ],

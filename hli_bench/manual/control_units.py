@@ -175,14 +175,14 @@ AXIS_ELEMENTS: Final = (
     _unit(
         "ax/<n>/ipo_mc_control/override",
         UNS16,
-        "Override of the axis.",
+        "Override of independent axes and spindles; in the path and at homing that of the channel acts.",
         "MCControlUNS16Unit_Override",
         unit="0.1 %",
     ),
     _unit(
         "ax/<n>/ipo_mc_control/override_valid",
         BOOL,
-        "The override counts.",
+        "The override of the axis counts.",
         "MCControlBoolUnit_OverrideValid",
     ),
     _value("ax/<n>/lr_state/measure_value_ok_r", BOOL, CNC, "A valid measured value was latched."),
@@ -243,13 +243,13 @@ CHANNEL_ELEMENTS: Final = (
         "MCControlBoolUnit_Feedhold",
     ),
     _unit(
-        "ch/<n>/bahn_mc_control/override",
+        "ch/<n>/bahn_mc_control/override_feedrate",
         UNS16,
-        "Override of the channel. Place decided here.",
+        "Feed override of the channel, up to P-CHAN-00056: path and homing.",
+        "override",
         "MCControlUNS16Unit_Override",
         unit="0.1 %",
     ),
-    _unit("ch/<n>/bahn_mc_control/override_valid", BOOL, "The override counts. Place decided here."),
     _unit("ch/<n>/bahn_mc_control/delete_distance_to_go", BOOL, "Drop the rest of the path."),
     _value(
         "ch/<n>/channel_state/mode_r",

@@ -34,8 +34,6 @@ OVERRIDE_0 = repr(
     {
         "ch/1/head/plc_present_w": True,
         "ch/1/bahn_mc_control/override/enable_w": True,
-        "ch/1/bahn_mc_control/override_valid/enable_w": True,
-        "ch/1/bahn_mc_control/override_valid/command_w": True,
     }
 )
 
@@ -69,7 +67,7 @@ def held(unit: str, command: object, present: str = "ax/1") -> str:
         (held(FEEDHOLD, True, "ch/1"), f"{FEEDHOLD} is TRUE"),
         (
             OVERRIDE_0,
-            "ch/1/bahn_mc_control/override is 0",
+            "ch/1/bahn_mc_control/override_feedrate is 0",
         ),
     ],
 )

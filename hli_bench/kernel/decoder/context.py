@@ -59,7 +59,7 @@ class Context:
         """Ask the machine, unless nothing has moved since it was asked last."""
         if self.measurements.state is not None and not self.coordinates.void:
             return
-        state = yield Flush(source=source)
+        state = yield Flush(source=source, takes_positions=bool(self.coordinates.void))
         if state is None:
             raise InputError("a Flush must be answered with a MachineState", self.name, source.line)
         self.measurements.learn(state)

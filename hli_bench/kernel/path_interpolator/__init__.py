@@ -1,7 +1,9 @@
 """The running path: hold, override, brake. Its numbers are walked by the compiled `act`."""
 
+import numpy as np
+
 from hli_bench.kernel.path_preparation.dynamics import Ramp
-from hli_bench.laws.rows import BRAKE, IDLE, SEGMENTS, KernelRows
+from hli_bench.laws.rows import BRAKE, FEEDHOLD, IDLE, RUN, SEGMENTS, SHORT_CUT, KernelRows
 
 
 class Path:
@@ -37,8 +39,32 @@ class Path:
         path["state"] = BRAKE
 
     def hold(self, *, on: bool) -> None:
-        """Feedhold of the path compound."""
-        self._rows.path[0]["hold"] = on
+        """Feedhold of the channel: the path and what moves by itself stand."""
+        self._hold(FEEDHOLD, on=on)
+
+    def hold_for_short_cut(self, *, on: bool) -> bool:
+        """Let the path stand because its rest is to be dropped; tell whether there is one under way."""
+        self._hold(SHORT_CUT, on=on)
+        return bool(self._rows.path[0]["state"] == RUN)
+
+    @property
+    def stands(self) -> bool:
+        """The path stands, held or at its end."""
+        return self.idle or bool(self._rows.path[0]["v"] <= 0.0)
+
+    @property
+    def tail(self) -> int:
+        """Number of the segment that will be put next."""
+        return int(self._rows.path[0]["tail"])
+
+    def drop(self) -> None:
+        """Drop all that is prepared; the path must stand."""
+        path = self._rows.path[0]
+        path["state"], path["s"], path["v"] = IDLE, 0.0, 0.0
+
+    def _hold(self, reason: int, *, on: bool) -> None:
+        path = self._rows.path[0]
+        path["hold"] = path["hold"] | reason if on else path["hold"] & ~np.uint8(reason)
 
     def override(self, factor: float) -> None:
         """Set the feed override, 1.0 = as programmed."""

@@ -51,6 +51,10 @@ class Preparation:
         self._rows.tip["end"] = self._rows.axis["command"]
         self._rows.plan["joined"] = 0
 
+    def separate(self) -> None:
+        """Let the path come to a stop before what is put next."""
+        self._rows.plan["joined"] = 0
+
     @property
     def room(self) -> int:
         """Segments that can still be put; of a path that was stopped none is left."""

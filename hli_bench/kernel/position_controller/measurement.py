@@ -23,7 +23,7 @@ from hli_bench.kernel.position_controller.measuring_rules import (
     to_fixed_stop,
 )
 from hli_bench.kernel.records import MeasuredValue
-from hli_bench.kernel.sequence import END, Phase, Table, Then, Until, always
+from hli_bench.kernel.sequence import END, Level, Phase, Table, Then, Until, always
 from hli_bench.kernel.watches import Condition, cycle_reached, path_done
 from hli_bench.laws.rows import SEGMENTS
 from hli_bench.manual.axis.fallbacks import effective_probing_offset
@@ -64,6 +64,8 @@ class Run:
     """The probing event of each axis; made once, since an edge has a memory."""
     first_looks: dict[AxisIndex, Until] = field(default_factory=dict)
     """That an axis' probe is operated when it is first seen, for sources that may not see it at once."""
+    cut: bool = False
+    """Delete distance to go has come while the run was on its way."""
     missed: list[AxisIndex] = field(default_factory=list)
     """Axes for which the run came to its end without a value."""
     reported: set[AxisIndex] = field(default_factory=set)
@@ -218,6 +220,19 @@ def _brake(run: Run) -> None:
     run.core.path.brake(run.core.preparation.brake_ramp(run.segment))
 
 
+def _is_cut(run: Run) -> Until:
+    return Level(lambda: run.cut)
+
+
+def _cut_off(run: Run) -> None:
+    """Brake and drop the run (TF5200 delete distance to go 2.8); that no value came is no error then."""
+    run.missed += run.pending
+    if run.error_no_signal:
+        run.core.report(errors.NO_SIGNAL_IGNORED, run.block.source)
+        run.reported.update(run.pending)
+    run.core.path.stop()
+
+
 def _missed(run: Run) -> None:
     """The path has ended and an axis has not delivered."""
     core = run.core
@@ -342,7 +357,11 @@ def table(run: Run) -> Table[Run]:
     return {
         "arming": Phase(_nothing, (*ready, Then(lambda _: cycle_reached(overdue), "finishing", _not_ready))),
         "starting": Phase(_start_path, (Then(always, _begun),)),
-        "running": Phase(_nothing, (*events("running"), Then(lambda _: path_done(), "arriving"))),
+        "running": Phase(
+            _nothing,
+            (Then(_is_cut, "cut"), *events("running"), Then(lambda _: path_done(), "arriving")),
+        ),
+        "cut": Phase(_cut_off, (Then(lambda _: path_done(), _after_standstill),)),
         "arriving": Phase(_nothing, (*events("arriving"), Then(_arrived, _after_standstill, _missed))),
         "braking": Phase(_brake, (Then(lambda _: path_done(), _after_standstill),)),
         "retracting": Phase(_retract, (Then(lambda _: path_done(), "finishing"),)),

@@ -54,6 +54,18 @@ PROBE_EVENT_TOO_EARLY: Final[ErrorSheet] = motion_error(
     "probe event of axis {0} before the measuring block",
     "logical axis number",
 )
+NO_END_OF_SHORT_CUT: Final[ErrorSheet] = warning(
+    "no_end_of_short_cut",
+    50_810,
+    "distance to go deleted, and no motion follows: the path ends where it stands",
+    source=diagnosis(50810),
+)
+SHORT_CUT_ENDED: Final[ErrorSheet] = warning(
+    "short_cut_ended",
+    51_036,
+    "distance to go deleted, and a block follows that no short cut passes: the line leads to where it begins",
+    source=diagnosis(51036),
+)
 NO_MEASUREMENT: Final[ErrorSheet] = motion_error(
     "no_measurement", 50_057, "measuring run without probing signal, axis {0}", "logical axis number"
 )
@@ -233,7 +245,10 @@ FIXED_STOP_START_TOO_LARGE: Final[ErrorSheet] = motion_error(
     "start value",
 )
 NO_SIGNAL_IGNORED: Final[ErrorSheet] = warning(
-    "no_signal_ignored", 51_058, "ERR_NO_SIGNAL does not act in a run that ended by delete distance to go"
+    "no_signal_ignored",
+    51_058,
+    "ERR_NO_SIGNAL does not act in a run that ended by delete distance to go",
+    source=diagnosis(51058),
 )
 FIXED_STOP_HOMING_COUPLED: Final[ErrorSheet] = motion_error(
     "fixed_stop_homing_coupled", 51_080, "homing to a fixed stop of coupled axis {0}", "logical axis number"

@@ -103,6 +103,9 @@ class ControlUnits:
         self._defaults = defaults
         self._wiring = _wiring(image.layout)
         self._units: dict[str, ControlUnit] = {}
+        for path in self._wiring.zeros:
+            if path.rpartition("/")[2] in defaults:
+                self._unit(path).acknowledge(defaults[path.rpartition("/")[2]])
 
     def __getitem__(self, name: str) -> ControlUnit:
         """Return the unit that `name` means (path, ST form or old name)."""

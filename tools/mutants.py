@@ -12,15 +12,18 @@ import ast
 import os
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import tomllib
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from queue import SimpleQueue
+from time import monotonic
 from typing import TypeGuard
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -50,7 +53,9 @@ NEEDED = (
         "requirements-dev.lock",
     ),
 )
-TIMEOUT_S = 600.0
+PATIENCE = 5.0
+"""How many times as long as without a mutant the tests may take; then it is killed: it never ends."""
+LEAST_S = 60.0
 OTHER_WAY = {
     ast.Lt: ">=",
     ast.GtE: "<",
@@ -236,8 +241,8 @@ class Tree:
                 shutil.copy(source, folder / name)
         (folder / "mutants_select.py").write_text(SELECT)
 
-    def passes(self, line: str, files: Sequence[str]) -> bool | None:
-        """Run the tests marked with a line; None when there are none."""
+    def passes(self, line: str, files: Sequence[str], timeout_s: float = 1200.0) -> bool:
+        """Run the tests marked with a line and tell whether they pass; no test, or no end in time, is no pass."""
         command = [
             sys.executable,
             "-m",
@@ -252,23 +257,56 @@ class Tree:
         ]
         environment = {**os.environ, "MUTANTS_LINE": line, "PYTHONPATH": str(self.folder)}
         environment |= {"PYTHONDONTWRITEBYTECODE": "1"}
+        quiet = subprocess.DEVNULL
+        run = subprocess.Popen(
+            command, cwd=self.folder, env=environment, stdout=quiet, stderr=quiet, start_new_session=True
+        )
         try:
-            run = subprocess.run(
-                command, cwd=self.folder, env=environment, capture_output=True, timeout=TIMEOUT_S, check=False
-            )
+            return run.wait(timeout_s) == 0
         except subprocess.TimeoutExpired:
             return False
-        return None if run.returncode == 5 else run.returncode == 0
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(run.pid, signal.SIGKILL)
+            run.wait()
 
-    def survives(self, mutant: Mutant, line: str, files: Sequence[str]) -> bool:
+    def survives(self, mutant: Mutant, line: str, files: Sequence[str], timeout_s: float) -> bool:
         """Tell whether the marked tests pass with the mutant."""
         path = self.folder / mutant.file
         source = path.read_text(encoding="utf-8")
         path.write_text(mutant.applied(source), encoding="utf-8")
         try:
-            return bool(self.passes(line, files))
+            return self.passes(line, files, timeout_s)
         finally:
             path.write_text(source, encoding="utf-8")
+
+
+class Check:
+    """Tries mutants, some at a time, each in a tree of its own."""
+
+    def __init__(self, folder: Path, jobs: int, tests: dict[str, list[str]]) -> None:
+        self._tests = tests
+        self._patience_s: dict[str, float] = {}
+        self._trees: SimpleQueue[Tree] = SimpleQueue()
+        for number in range(jobs):
+            self._trees.put(Tree(folder / str(number)))
+
+    def baseline(self, line: str) -> bool:
+        """Tell whether the tests of a line pass as they are; how long they take is how long they may take."""
+        tree, begin = self._trees.get(), monotonic()
+        try:
+            return tree.passes(line, self._tests[line])
+        finally:
+            self._trees.put(tree)
+            self._patience_s[line] = max(PATIENCE * (monotonic() - begin), LEAST_S)
+
+    def survives(self, line: str, mutant: Mutant) -> bool:
+        """Tell whether a mutant goes unnoticed by the tests of a line."""
+        tree = self._trees.get()
+        try:
+            return tree.survives(mutant, line, self._tests[line], self._patience_s[line])
+        finally:
+            self._trees.put(tree)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -308,32 +346,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
             (line, one) for one in (here if given.only else chance.sample(here, min(given.each, len(here))))
         ]
 
-    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-        trees: SimpleQueue[Tree] = SimpleQueue()
-        for number in range(given.jobs):
-            trees.put(Tree(Path(folder) / str(number)))
-
-        def tried(line: str, mutant: Mutant | None) -> bool | None:
-            tree = trees.get()
-            try:
-                return (
-                    tree.passes(line, tests[line])
-                    if mutant is None
-                    else tree.survives(mutant, line, tests[line])
-                )
-            finally:
-                trees.put(tree)
-
-        with ThreadPoolExecutor(given.jobs) as pool:
-            for line, good in zip(chosen, pool.map(lambda line: tried(line, None), chosen), strict=True):
-                if not good:
-                    wrong.append(line)
-                    print(f"{line}: its tests do not pass without a mutant", file=sys.stderr)
-            survived = 0
-            for (line, mutant), lives in zip(work, pool.map(lambda one: tried(*one), work), strict=True):
-                survived += bool(lives)
-                word = "survived" if lives else "killed"
-                print(f"{word}: {line} {mutant.file}:{mutant.line} {mutant.what}", flush=True)
+    with tempfile.TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(given.jobs) as pool:
+        check = Check(Path(folder), given.jobs, tests)
+        for line, good in zip(chosen, pool.map(check.baseline, chosen), strict=True):
+            if not good:
+                wrong.append(line)
+                print(f"{line}: its tests do not pass without a mutant", file=sys.stderr)
+        survived = 0
+        for (line, mutant), lives in zip(work, pool.map(lambda one: check.survives(*one), work), strict=True):
+            survived += lives
+            word = "survived" if lives else "killed"
+            print(f"{word}: {line} {mutant.file}:{mutant.line} {mutant.what}", flush=True)
     killed = len(work) - survived
     percent = 100.0 * killed / len(work) if work else 0.0
     print(

@@ -90,6 +90,7 @@ def test_three_phases_with_zero_pulse(make, recorder):
     assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=TO_THE_INCREMENT)
     done = bench.kernel.image.layout.element("ax/1/lr_state/homing_done_r").id
     assert bench.kernel.image.get(done)
+    assert recorder.column("probe_function", X)[-1] == 0, "the latch is switched off again"
 
 
 @pytest.mark.req("H-007", "H-020", "H-165", "H-199")

@@ -4,7 +4,7 @@ import gc
 import multiprocessing
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from typing import Any, Final, Protocol, cast
@@ -106,10 +106,19 @@ def _interrupts_held() -> Iterator[None]:
     # It is started with the first process and would end the holding.
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    came: list[int] = []
+    # The mask is this thread's: the signal may go to another one, and its handler runs here all the same.
+    handler = None
+    with suppress(ValueError):  # outside the main thread no handler runs, and none can be set
+        handler = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
     try:
         yield
     finally:
+        if handler is not None:
+            signal.signal(signal.SIGINT, handler)
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    if came:
+        signal.raise_signal(signal.SIGINT)
 
 
 def _hand_out(pipe: _Pipe, chunks: Iterator[Sequence[Run]]) -> int:

@@ -6,6 +6,7 @@ import shlex
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -106,6 +107,26 @@ def test_ctrl_c_is_not_for_the_workers():
     (masks,) = engines.LocalProcesses(1, _held).chunks(None, iter([[None]]))
     assert signal.SIGINT in masks
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def test_ctrl_c_while_a_worker_starts_comes_when_it_has_started():
+    """Another thread takes the signal; a worker left half started would end with a traceback."""
+    over, reached = threading.Event(), []
+
+    def start() -> None:
+        with engines._interrupts_held():
+            os.kill(os.getpid(), signal.SIGINT)
+            over.wait(0.05)
+            reached.append(True)
+
+    other = threading.Thread(target=over.wait)
+    other.start()
+    with pytest.raises(KeyboardInterrupt):
+        start()
+    over.set()
+    other.join()
+
+    assert reached
 
 
 def _held(job, runs):

@@ -1,6 +1,7 @@
 """The public class: a machine that runs NC programs."""
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 from hli_bench.base.endpoints import check_key, endpoint
 from hli_bench.base.errors import BenchError, InputError
-from hli_bench.base.time import NS_PER_S
+from hli_bench.base.time import NS_PER_S, NS_PER_US
 from hli_bench.bench import build, state
 from hli_bench.bench.config import MachineConfig, PlcConfig
 from hli_bench.bench.folder import load
@@ -27,6 +28,7 @@ from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, Observer
 from hli_bench.shells.apart import apart
 from hli_bench.shells.pacing import RealPace, Stopwatch
+from hli_bench.shells.plc_times import TOLD_FROM, PlcBook
 from hli_bench.shells.processes import Deadline, PlcProcess, free_endpoint
 from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 
@@ -40,6 +42,8 @@ WITHOUT_MOTION_PACED: Final = 50
 FOREVER: Final = 1 << 62
 IDLE_S: Final = 0.2
 """Longest wait for a client while time stands still."""
+MOST_TOLD: Final = 100
+"""PLCs of whose overruns people are told: clients may attach under ever new names."""
 LONGEST_RUN_S: Final = 86_400.0
 """Machine time after which a client's program that is not done is aborted: a day (decided here)."""
 ATTACH_S: Final = 30.0
@@ -106,6 +110,8 @@ class Bench:
             self._tap = _Tap(on_record)
             self.engine.listeners.append(self._tap)
             self._endpoint = zenoh
+            self._plc_times = PlcBook() if pace == "real" else None
+            self._overran: Counter[str] = Counter()
             self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
             self._garbage = Garbage()
             self._pace = RealPace(self.config.cycle_ns, idle=self._garbage.idle) if pace == "real" else None
@@ -178,6 +184,8 @@ class Bench:
         if self._pace is not None:
             self._pace.resume()
             self._pace.take_part()
+        if self._plc_times is not None:
+            self._plc_times.begin(plc.name for plc in self.engine.plcs)
         ended = False
         holding: list[str] = []
         stopped: KeyboardInterrupt | None = None
@@ -241,9 +249,11 @@ class Bench:
                 *(f"motion was held: {element}" for element in holding),
                 *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
                 *self._without_plc(),
+                *(self._plc_times.remarks() if self._plc_times else ()),
                 *remarks(self.config, self.kernel.channel.unmeasured),
                 *self._foreign_syncs(self.engine.foreign_syncs - syncs),
             ),
+            plcs=self._plc_times.rows() if self._plc_times else (),
             lateness=self._pace.take_part() if self._pace else None,
         )
 
@@ -352,7 +362,13 @@ class Bench:
         )
         self._closing.enter_context(server)
         self._tap.door = HliDoor(
-            server, self.engine, lockstep=lockstep, state=self.state, on_note=self._on_note
+            server,
+            self.engine,
+            lockstep=lockstep,
+            state=self.state,
+            on_note=self._on_note,
+            plc_times=self._plc_times,
+            on_overrun=self._overran_plc,
         )
         return self._tap.door
 
@@ -374,6 +390,14 @@ class Bench:
         self._lost[name] = note
         self._on_note(note)
 
+    def _overran_plc(self, name: str, cycle: int) -> None:
+        """Have an overrun recorded; people are told once of each PLC that has some."""
+        self.engine.overran(name, cycle)
+        if name in self._overran or len(self._overran) < MOST_TOLD:
+            self._overran[name] += 1
+        if self._overran[name] == TOLD_FROM:
+            self._on_note(f"PLC {name} does not keep its period, last in cycle {cycle}: {TOLD_FROM} overruns")
+
     def _attach_plcs(self) -> None:
         for plc in self._plcs:
             if plc.process:
@@ -382,7 +406,14 @@ class Bench:
             script = loaded(plc.script)
             period_us = plc.period_us or period_of(script, plc.script)
             task = Task(plc.name, script, period_us, self.kernel.image.layout, self.terminal_layouts)
-            self.engine.attach(LocalPlc(task, self.config.cycle_ns, partial(self._lost_plc, plc.name)))
+            port = LocalPlc(
+                task,
+                self.config.cycle_ns,
+                partial(self._lost_plc, plc.name),
+                self._plc_times.enter(plc.name, period_us * NS_PER_US) if self._plc_times else None,
+                self._overran_plc,
+            )
+            self.engine.attach(port)
 
     def _start_plc_process(self, plc: PlcConfig) -> None:
         """Start a script as a process of its own and wait until it has attached."""

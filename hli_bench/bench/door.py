@@ -7,11 +7,12 @@ from typing import Any, Final
 
 from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.base.time import Ns
-from hli_bench.bench.plc_ports import AttachedPlc, period_cycles
+from hli_bench.bench.plc_ports import AttachedPlc, OnOverrun, period_cycles
 from hli_bench.bench.result import error_of
 from hli_bench.kernel.records import CncError, Emitted
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine
+from hli_bench.shells.plc_times import PlcBook
 from hli_bench.shells.zenoh_inbox import FREE_NS, PACED_NS, Budget
 from hli_bench.shells.zenoh_requests import (
     Attach,
@@ -47,6 +48,8 @@ class HliDoor:
         lockstep: bool,
         state: Callable[[], dict[str, Any]],
         on_note: Callable[[str], None],
+        plc_times: PlcBook | None = None,
+        on_overrun: OnOverrun = lambda *_: None,
     ) -> None:
         self._server = server
         self._engine = engine
@@ -54,6 +57,8 @@ class HliDoor:
         self._budget_ns = FREE_NS if lockstep else PACED_NS
         self._state = state
         self._on_note = on_note
+        self._plc_times = plc_times
+        self._on_overrun = on_overrun
         self._published = -1
         self._written: list[tuple[int, WriteRequest]] = []
         self._resets: list[tuple[int, Reset]] = []
@@ -232,7 +237,14 @@ class HliDoor:
             request.refuse(f"a PLC called {request.plc!r} is attached already")
             return
         port = AttachedPlc(
-            request.plc, cycles, self._server.plcs, self.publish, lockstep=self._lockstep, cycle_ns=cycle_ns
+            request.plc,
+            cycles,
+            self._server.plcs,
+            self.publish,
+            lockstep=self._lockstep,
+            cycle_ns=cycle_ns,
+            times=self._plc_times.enter(request.plc, cycles * cycle_ns) if self._plc_times else None,
+            on_overrun=self._on_overrun,
         )
         first = (engine.cycle // cycles + 1) * cycles
         if request.accept(cycle=first, cycle_us=cycle_ns // 1000, lockstep=self._lockstep):

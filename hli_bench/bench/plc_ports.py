@@ -8,11 +8,17 @@ from hli_bench.base.errors import InputError
 from hli_bench.base.time import NS_PER_S, Ns
 from hli_bench.plc import Task, load
 from hli_bench.plc.script import line_of
+from hli_bench.shells.plc_times import PlcTimes
 from hli_bench.shells.watchdog import WATCHDOG, Overdue
 from hli_bench.wire.hli import Commands
 
 ANSWER_S: Final = 10.0
 """Time by the clock in which a PLC for which the kernel waits must be done with a cycle (decided here)."""
+LAPSE_PERIODS: Final = 10
+LAPSE_NS: Final = 100_000_000
+"""An answer counts for nothing when the image it answers is older than so many periods of the PLC and older than so
+long (decided here): a PLC that lags must not act on a machine of long ago.
+"""
 SILENCE_S: Final = 1.0
 """Machine time, beyond its period, for which a PLC for which it does not wait may say nothing (decided here)."""
 
@@ -36,19 +42,50 @@ def loaded(path: Path) -> Any:
         raise InputError(message, str(path), line_of(overdue, path)) from overdue
 
 
+OnOverrun = Callable[[str, int], None]
+"""Gets the name of a PLC that has not kept its period, and the cycle in which it was due."""
+
+
 class LocalPlc:
-    """A script that runs in this process. `on_note` gets a line when it does not return from a cycle."""
+    """A script that runs in this process. `on_note` gets a line when it does not return from a cycle.
 
-    __slots__ = ("_on_note", "_task", "name", "period_cycles")
+    With `times` it is measured against its period, and `on_overrun` is called when it takes longer. Its first run is
+    not: that one has `start` in it, as the first answer of an attached one.
+    """
 
-    def __init__(self, task: Task, cycle_ns: int, on_note: Callable[[str], None]) -> None:
+    __slots__ = ("_on_note", "_on_overrun", "_task", "name", "period_cycles", "times")
+
+    def __init__(
+        self,
+        task: Task,
+        cycle_ns: int,
+        on_note: Callable[[str], None],
+        times: PlcTimes | None = None,
+        on_overrun: OnOverrun = lambda *_: None,
+    ) -> None:
+        self.times = times
+        self._on_overrun = on_overrun
         self._task = task
         self._on_note = on_note
         self.name = task.name
         self.period_cycles = period_cycles(task.name, task.period_us, cycle_ns)
 
+    @property
+    def figures(self) -> Mapping[str, object]:
+        """How it keeps its period, in real pace."""
+        return self.times.whole.figures() if self.times is not None else {}
+
     def tick(self, cycle: int, dc_ns: Ns, image: bytearray, io: Mapping[str, bytes]) -> Commands | None:
         """Run the script once; None when it does not return in time, then it must not be stepped any further."""
+        if self.times is None or self._task.starting:
+            return self._step(cycle, dc_ns, image, io)
+        self.times.begin()
+        commands = self._step(cycle, dc_ns, image, io)
+        if self.times.ended():
+            self._on_overrun(self.name, cycle)
+        return commands
+
+    def _step(self, cycle: int, dc_ns: Ns, image: bytearray, io: Mapping[str, bytes]) -> Commands | None:
         try:
             return WATCHDOG.limited(ANSWER_S, self._task.step, cycle, dc_ns, image, io)
         except Overdue as overdue:
@@ -66,15 +103,16 @@ class Exchange(Protocol):
     def commands(self, plc: str, cycle: int, timeout_s: float) -> Commands | None:
         """Wait for a PLC's answer to a cycle."""
 
-    def latest_commands(self, plc: str, cycle: int) -> Commands | None:
-        """Return what a PLC has written since the last call; the bench is at `cycle`."""
+    def latest_commands(self, plc: str, cycle: int, oldest: int = 0) -> Commands | None:
+        """Return what a PLC has written since the last call; the bench is at `cycle`, answers before `oldest` lapse."""
 
 
 class AttachedPlc:
     """A PLC in another process: its image has been published, its answer is awaited (lock-step) or taken as it comes.
 
     `publish` puts the images of a cycle; every port may call it, it acts once a cycle. `patience_s` is how long it may
-    be silent: by the clock in lock-step, else of the machine, at first as long as in lock-step.
+    be silent: by the clock in lock-step, else of the machine, at first as long as in lock-step. With `times` (not in
+    lock-step) an image that is not answered before the next one is due counts as an overrun, once it has answered.
     """
 
     __slots__ = (
@@ -82,10 +120,12 @@ class AttachedPlc:
         "_exchange",
         "_heard",
         "_lockstep",
+        "_on_overrun",
         "_publish",
         "name",
         "patience_s",
         "period_cycles",
+        "times",
     )
 
     def __init__(
@@ -97,8 +137,12 @@ class AttachedPlc:
         *,
         lockstep: bool,
         cycle_ns: int,
+        times: PlcTimes | None = None,
+        on_overrun: OnOverrun = lambda *_: None,
     ) -> None:
         self.name = name
+        self.times = times
+        self._on_overrun = on_overrun
         self.period_cycles = cycles
         self.patience_s = ANSWER_S
         self._exchange = exchange
@@ -108,12 +152,18 @@ class AttachedPlc:
         self._heard: int | None = None
         """Cycle in which it was heard last, at first the one in which it was due."""
 
+    @property
+    def figures(self) -> Mapping[str, object]:
+        """How it keeps its period, in real pace."""
+        return self.times.whole.figures() if self.times is not None else {}
+
     def tick(self, cycle: int, dc_ns: Ns, image: bytearray, io: Mapping[str, bytes]) -> Commands | None:
         """Exchange images and commands; None when the PLC does not answer in time."""
         self._publish(cycle, dc_ns, io)
         if self._lockstep:
             return self._exchange.commands(self.name, cycle, self.patience_s)
-        commands = self._exchange.latest_commands(self.name, cycle)
+        commands = self._exchange.latest_commands(self.name, cycle, cycle - self._lapse_cycles)
+        self._count(cycle, commands)
         if commands is not None:
             self._heard, self.patience_s = cycle, SILENCE_S
             return commands
@@ -123,3 +173,18 @@ class AttachedPlc:
         return (
             None if silent * self._cycle_ns > self.patience_s * NS_PER_S else Commands(self.name, cycle, ())
         )
+
+    @property
+    def _lapse_cycles(self) -> int:
+        """After so many cycles an answer counts for nothing."""
+        return max(LAPSE_PERIODS * self.period_cycles, LAPSE_NS // self._cycle_ns)
+
+    def _count(self, cycle: int, commands: Commands | None) -> None:
+        """Count the image that was due before this one: answered, or an overrun."""
+        if self.times is None or (self.patience_s == ANSWER_S and commands is None):
+            return
+        answered = commands is not None and commands.cycle >= cycle - self.period_cycles
+        self.times.answered()
+        if not answered and self.patience_s == SILENCE_S:
+            self.times.overran()
+            self._on_overrun(self.name, cycle - self.period_cycles)

@@ -92,6 +92,9 @@ class Result:
     cycles: int
     notes: Sequence[str] = ()
     """What the bench remarks beside the CNC: commands that did not count, what held the motion, no face to probe."""
+    plcs: Sequence[Mapping[str, Any]] = ()
+    """How the PLC tasks of a bench in real pace kept their periods: name, period_us, runs, overruns, min_us, mean_us,
+    max_us; empty in free pace."""
     lateness: Lateness | None = None
     """How a bench in real pace kept its cycle meanwhile, None in free pace."""
 
@@ -118,8 +121,10 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """Return what `--result` writes, and `notes`; of a bench in real pace also how it kept its cycle."""
         found = asdict(self)
-        del found["lateness"]
-        return found | (self.lateness.figures() if self.lateness else {})
+        del found["lateness"], found["plcs"]
+        if self.lateness is None:
+            return found
+        return found | self.lateness.figures() | {"plcs": [dict(one) for one in self.plcs]}
 
 
 class Collector:

@@ -45,7 +45,9 @@ def look(
         "dc_ns": int(engine.dc_ns),
         "axes": axes,
         "terminals": {terminal.name: terminal.values(images[terminal.name]) for terminal in terminals},
-        "plcs": [{"name": plc.name, "period_cycles": plc.period_cycles} for plc in engine.plcs],
+        "plcs": [
+            {"name": plc.name, "period_cycles": plc.period_cycles, **plc.figures} for plc in engine.plcs
+        ],
         "net": dict(net),
         "foreign_syncs": engine.foreign_syncs,
         "late_cycles": lateness.late if lateness else 0,

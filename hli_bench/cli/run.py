@@ -42,7 +42,7 @@ RESULT_KEYS: Final = (
 """What `--result` writes."""
 REMARK_KEYS: Final = ("unmeasured", "notes")
 """What it also writes when there is anything to remark."""
-PACED_KEYS: Final = ("late_cycles", "worst_lateness_us", "lateness_histogram")
+PACED_KEYS: Final = ("late_cycles", "worst_lateness_us", "lateness_histogram", "plcs")
 """What it also writes of a bench in real pace."""
 EXIT_STATUS: Final[Mapping[str, int]] = {"completed": 0, "error": 1, "aborted": 130}
 OUTPUTS: Final = ("result", "trace", "report", "can_log")

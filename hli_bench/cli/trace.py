@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hli_bench.shells.trace_file import AxesBlock, Stretch, TraceEvent, TraceMeta, TraceReader
     from hli_bench.wire.can import CanFrame
 
-CHANNELS: Final = ("meta", "axes", "can", "edges", "plc", "refused", "cnc", "gaps")
+CHANNELS: Final = ("meta", "axes", "can", "edges", "plc", "refused", "cnc", "overruns", "gaps")
 SUFFIXES: Final[Mapping[str, str]] = {
     "csv": ".csv",
     "parquet": ".parquet",
@@ -234,6 +234,8 @@ def _event_texts(event: "TraceEvent", meta: "TraceMeta", selection: Selection) -
     elif event.topic == "refused":
         if _axis_of(value["path"], numbers) in {"", *selection.axes}:
             yield f"{value['writer'] or 'client'}: {value['path']}: {value['reason']}"
+    elif event.topic == "overruns":
+        yield f"PLC {value['plc']} has not kept its period"
     elif event.topic == "gaps":
         yield f"{value['count']} cycles are missing, from {value['first']} on"
     else:

@@ -62,6 +62,10 @@ class PlcPort(Protocol):
     name: str
     period_cycles: int
 
+    @property
+    def figures(self) -> Mapping[str, object]:
+        """How it keeps its period: runs, overruns, times; in lock-step nothing, as time waits for it."""
+
     def tick(self, cycle: int, dc_ns: Ns, image: bytearray, io: Mapping[str, bytes]) -> Commands | None:
         """Run once on the images of `cycle`; None when there is no answer (the PLC is gone)."""
 
@@ -90,6 +94,9 @@ class Observer(Listener, Protocol):
 
     def commands(self, commands: Commands) -> None:
         """A PLC wrote."""
+
+    def overran(self, cycle: int, plc: str) -> None:
+        """A PLC that was due in a cycle has not kept its period."""
 
 
 NO_TICK: Final = 1 << 62
@@ -210,6 +217,11 @@ class Engine:
                 observer.commands(commands)
         self._decide = True
         return self.refuse(refusals)
+
+    def overran(self, plc: str, cycle: int) -> None:
+        """Tell the observers that a PLC has not kept its period."""
+        for observer in self.observers:
+            observer.overran(cycle, plc)
 
     def refuse(self, refusals: list[Refusal]) -> list[Refusal]:
         """Tell all who listen of writes that were refused; return them."""

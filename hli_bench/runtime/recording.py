@@ -266,6 +266,9 @@ class Recording:
         """Take writes that were refused."""
         self.refusals.extend((Ns(cycle * self.cycle_ns), refusal) for refusal in refusals)
 
+    def overran(self, cycle: int, plc: str) -> None:
+        """The result counts them."""
+
     def curve(self, axis: str) -> Curve:
         """Return the samples of an axis. Raises KeyError for an axis that the machine has not."""
         self._condense()

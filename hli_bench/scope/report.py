@@ -35,6 +35,7 @@ def report_html(recording: Recording, result: Mapping[str, Any], machine_name: s
         _overview(recording),
         _events(recording),
         _lateness(result),
+        _plcs(result.get("plcs", ())),
         _variables(result["variables"]),
     ]
     return (
@@ -174,6 +175,25 @@ def _lateness(result: Mapping[str, Any]) -> str:
         f"{result['cycles']} cycles, the worst of which began {result['worst_lateness_us']:.1f} µs behind its time.</p>"
         f'<p class="soft">Cycles by lateness in µs; bars are logarithmic.</p><ul class="bars">{rows}</ul></section>'
     )
+
+
+def _plcs(plcs: Sequence[Mapping[str, Any]]) -> str:
+    """Return how the PLC tasks of a bench in real pace kept their periods; overruns in red."""
+    if not plcs:
+        return ""
+    heads = ("PLC", "Period µs", "Runs", "Overruns", "Shortest µs", "Mean µs", "Longest µs")
+    rows = [
+        (
+            one["name"],
+            *(str(one[key]) for key in ("period_us", "runs", "overruns")),
+            *("" if one[key] is None else f"{one[key]:.0f}" for key in ("min_us", "mean_us", "max_us")),
+        )
+        for one in plcs
+    ]
+    table = _table(heads, rows, numbers=(1, 2, 3, 4, 5, 6))
+    overran = any(one["overruns"] for one in plcs)
+    html = f"<section><h2>PLC tasks</h2>{table}</section>"
+    return html.replace("<section>", '<section class="error">') if overran else html
 
 
 def _range(one: Mapping[str, Any]) -> str:

@@ -101,6 +101,9 @@ class CandumpLog:
     def refused(self, cycle: int, refusals: Sequence[Refusal]) -> None:
         """The HLI is not on the bus."""
 
+    def overran(self, cycle: int, plc: str) -> None:
+        """PLCs are not on the bus."""
+
     def gap(self, first: int, count: int) -> None:
         """Cycles were lost: their lines are missing, the stamps show it."""
         self._write()

@@ -184,6 +184,10 @@ class Handover:
         """Take writes that were refused."""
         self._calls.append(("refused", (cycle, tuple(refusals))))
 
+    def overran(self, cycle: int, plc: str) -> None:
+        """Take that a PLC has not kept its period."""
+        self._calls.append(("overran", (cycle, plc)))
+
     def close(self) -> None:
         """Hand over what waits and let the process close the file. May be called again.
 

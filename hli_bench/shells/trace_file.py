@@ -47,6 +47,8 @@ WRITER: Final = "hli-bench"
 TOPICS: Final = ("meta", "axes", "can", "edges", "plc", "refused", "cnc")
 GAPS: Final = "gaps"
 """A topic only of files in which cycles are missing."""
+OVERRUNS: Final = "overruns"
+"""A topic only of files in which a PLC has not kept its period."""
 
 _BLOCK: Final = Struct("<QII")
 _CAN: Final = Struct("<HBB")
@@ -84,6 +86,7 @@ _SCHEMAS: Final[Mapping[str, object]] = {
     "plc": _object(plc=_TEXT, cycle=_WHOLE, writes={"type": "array"}),
     "refused": _object(path=_TEXT, reason=_TEXT, writer=_TEXT),
     "cnc": _object(kind=_TEXT),
+    OVERRUNS: _object(plc=_TEXT, cycle=_WHOLE),
     GAPS: _object(first=_WHOLE, count=_WHOLE),
 }
 
@@ -226,6 +229,12 @@ class TraceFile:
         """Take writes that were refused."""
         for refusal in refusals:
             self._event(Ns(cycle * self._cycle_ns), "refused", _json(asdict(refusal)))
+
+    def overran(self, cycle: int, plc: str) -> None:
+        """Take that a PLC has not kept its period."""
+        if OVERRUNS not in self._channels:
+            self._register(OVERRUNS)
+        self._event(Ns(cycle * self._cycle_ns), OVERRUNS, _json({"plc": plc, "cycle": cycle}))
 
     def gap(self, first: int, count: int) -> None:
         """Note that cycles were lost with all that happened in them; the next ones begin a block."""

@@ -71,6 +71,9 @@ class Recorder:
     def commands(self, commands: Commands) -> None:
         self.writes.append(commands)
 
+    def overran(self, cycle: int, plc: str) -> None:
+        pass
+
     def refused(self, cycle: int, refusals: Sequence[Refusal]) -> None:
         raise AssertionError(refusals)
 

@@ -64,7 +64,15 @@ Run = tuple[bytes, dict[str, Any]]
 
 def nc_results(result: Mapping[str, Any]) -> dict[str, Any]:
     """What the NC program got: all but real time, and remarks for people."""
-    not_of_it = ("program", "notes", "wall_s", "late_cycles", "worst_lateness_us", "lateness_histogram")
+    not_of_it = (
+        "program",
+        "notes",
+        "wall_s",
+        "late_cycles",
+        "worst_lateness_us",
+        "lateness_histogram",
+        "plcs",
+    )
     return {key: value for key, value in result.items() if key not in not_of_it}
 
 

@@ -179,7 +179,7 @@ def test_a_signal_aborts_and_still_writes_the_result(tmp_path: Path, number: int
     assert (running.returncode, out) == (130, "")
     assert "aborted" in said
     result = read_result(file)
-    assert set(result) == RESULT_KEYS | {"late_cycles", "worst_lateness_us", "lateness_histogram"}
+    assert set(result) == RESULT_KEYS | {"late_cycles", "worst_lateness_us", "lateness_histogram", "plcs"}
     assert result["status"] == "aborted"
     assert [message["text"] for message in result["messages"]] == ["started"]
 

@@ -1,7 +1,6 @@
 """The public class: a machine that runs NC programs."""
 
 import math
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
@@ -28,7 +27,7 @@ from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, Observer
 from hli_bench.shells.apart import apart
 from hli_bench.shells.pacing import RealPace, Stopwatch
-from hli_bench.shells.plc_times import TOLD_FROM, PlcBook
+from hli_bench.shells.plc_times import PlcBook
 from hli_bench.shells.processes import Deadline, PlcProcess, free_endpoint
 from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 
@@ -111,7 +110,7 @@ class Bench:
             self.engine.listeners.append(self._tap)
             self._endpoint = zenoh
             self._plc_times = PlcBook() if pace == "real" else None
-            self._overran: Counter[str] = Counter()
+            self._overran: set[str] = set()
             self._door = self._open_door(zenoh, lockstep=pace == "free") if zenoh else None
             self._garbage = Garbage()
             self._pace = RealPace(self.config.cycle_ns, idle=self._garbage.idle) if pace == "real" else None
@@ -391,12 +390,16 @@ class Bench:
         self._on_note(note)
 
     def _overran_plc(self, name: str, cycle: int) -> None:
-        """Have an overrun recorded; people are told once of each PLC that has some."""
+        """Have an overrun recorded; people are told once of each PLC that has many."""
         self.engine.overran(name, cycle)
-        if name in self._overran or len(self._overran) < MOST_TOLD:
-            self._overran[name] += 1
-        if self._overran[name] == TOLD_FROM:
-            self._on_note(f"PLC {name} does not keep its period, last in cycle {cycle}: {TOLD_FROM} overruns")
+        if name in self._overran or len(self._overran) >= MOST_TOLD or self._plc_times is None:
+            return
+        times = self._plc_times.often(name)
+        if times is not None:
+            self._overran.add(name)
+            self._on_note(
+                f"PLC {name} does not keep its period: {times.overruns} overruns in {times.runs} runs"
+            )
 
     def _attach_plcs(self) -> None:
         for plc in self._plcs:

@@ -7,8 +7,10 @@ from typing import Any, Final
 
 from hli_bench.base.time import NS_PER_US
 
-TOLD_FROM: Final = 5
-"""So many overruns are told to people: a busy computer gives any task a few. They are counted all (decided here)."""
+TOLD_FROM: Final = 10
+TOLD_SHARE: Final = 0.2
+"""So many overruns, and such a share of all runs, are told to people: a busy computer gives any task a few. They are
+counted all (decided here)."""
 KEPT: Final = 100
 """So many tasks are kept in mind: clients come and go under ever new names (decided here)."""
 
@@ -23,6 +25,11 @@ class Times:
     least_ns: int = 0
     total_ns: int = 0
     worst_ns: int = 0
+
+    @property
+    def often(self) -> bool:
+        """Whether there are so many overruns that people should know."""
+        return self.overruns >= max(TOLD_FROM, TOLD_SHARE * self.runs)
 
     def took(self, ns: int) -> None:
         """Count how long a run took."""
@@ -114,6 +121,11 @@ class PlcBook:
         for times in self._tasks:
             times.before, times.part = times.whole, Times()
 
+    def often(self, name: str) -> Times | None:
+        """Return the counts of a task that has so many overruns that people should know, else None."""
+        times = next((times for times in reversed(self._tasks) if times.name == name), None)
+        return times.whole if times is not None and times.whole.often else None
+
     def rows(self) -> list[dict[str, Any]]:
         """Return what a result says of the program's time."""
         return [
@@ -124,7 +136,7 @@ class PlcBook:
     def remarks(self) -> Iterator[str]:
         """Yield a line for people for each task that had some overruns."""
         for times in self._tasks:
-            if times.part.overruns >= TOLD_FROM:
+            if times.part.often:
                 worst = f", {times.part.worst_ns / 1e6:.1f} ms at worst" if times.part.timed else ""
                 yield (
                     f"PLC {times.name}: {times.part.overruns} overruns of its period of "

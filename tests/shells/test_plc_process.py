@@ -86,7 +86,9 @@ def test_a_plc_that_goes_ends_the_program_but_not_the_bench(
         assert client.state()["plcs"] == []
         client.reset()
         assert client.state()["state"] == "ready"
-    assert bench.command.err == ["PLC demo has gone in a program: its session has ended, or was silent"]
+    # On a busy computer a PLC of 1 ms does not keep its period, and that is told too.
+    said = [line for line in bench.command.err if "keep its period" not in line]
+    assert said == ["PLC demo has gone in a program: its session has ended, or was silent"]
 
 
 @pytest.mark.parametrize("pace", ["free", "real"])

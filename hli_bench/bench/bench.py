@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -34,6 +34,8 @@ from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 if TYPE_CHECKING:
     from hli_bench.bench.door import HliDoor
 
+STAND_CYCLES: Final = 60_000
+"""Cycles at most in which what was aborted comes to rest (decided here)."""
 START_UP_CYCLES: Final = 10_000
 """Cycles within which all drives must be in operation, or have said why not."""
 WITHOUT_MOTION_PACED: Final = 50
@@ -148,7 +150,8 @@ class Bench:
             raise BenchError("this bench has failed to start; make a new one")
         self.engine.power_on()
         drives = self.kernel.drives
-        self._advance(lambda: drives.settled, START_UP_CYCLES)
+        self._advance(lambda: drives.settled or self.kernel.failure is not None, START_UP_CYCLES)
+        self._raise_failure()
         if not drives.ready:
             raise BenchError(f"drives did not come into operation: {', '.join(drives.out())}")
         self._attach_plcs()
@@ -198,20 +201,38 @@ class Bench:
         except KeyboardInterrupt as interrupt:
             holding, stopped = self.kernel.holding(), interrupt
         finally:
+            last = self.engine.cycle
             if not ended:
                 self.engine.hand_out()
                 self.reset()
             self._tap.collector = None
+            self._stand()
             if self._door is not None:
                 self._door.state_changed()
+        self._raise_failure()
         status = collector.status(completed=self.kernel.channel.completed) if ended else "aborted"
-        result = self._result(name, status, collector, first, syncs, watch, holding)
+        result = self._result(name, status, collector, last - first, syncs, watch, holding)
         if stopped is not None:
             self.interrupted = result
             raise stopped
         if self._pace is not None:
             self._garbage.between_programs()
         return result
+
+    def _stand(self) -> None:
+        """Let what a program has left moving come to rest: it brakes already."""
+        last = self.engine.cycle + STAND_CYCLES
+        for _ in range(1 + len(self.engine.plcs)):
+            # A PLC that fails meanwhile takes part no more, and why the program ended is what counts.
+            with suppress(BenchError):
+                self._advance(lambda: self.kernel.core.at_rest, last)
+                return
+
+    def _raise_failure(self) -> None:
+        """Raise what went wrong in a cycle and is none of the CNC's errors; by now everything stands."""
+        failure = self.kernel.take_failure()
+        if failure is not None:
+            raise failure
 
     def _cycles(self, seconds: float) -> int:
         """Return how many cycles it takes until so much machine time is over, at least one."""
@@ -222,16 +243,15 @@ class Bench:
         name: str,
         status: str,
         collector: Collector,
-        first: int,
+        cycles: int,
         syncs: int,
         watch: Stopwatch,
         holding: Sequence[str],
     ) -> Result:
-        """Return the result of a program that began behind cycle `first`; what `holding` names held its motion.
+        """Return the result of a program that took `cycles`; what `holding` names held its motion.
 
         `syncs` SYNC frames had come from others when it began.
         """
-        cycles = self.engine.cycle - first
         return Result(
             program=name,
             status=status,
@@ -262,6 +282,7 @@ class Bench:
         if self._pace is not None:
             self._pace.resume()
         self._advance(lambda: False, self.engine.cycle + cycles)
+        self._raise_failure()
 
     def reset(self) -> None:
         """CNC reset: errors are cleared, drives that dropped out come back."""
@@ -291,6 +312,8 @@ class Bench:
                 result_reply(run, request, self._on_note)
             if self._pace is not None or door.waiting:
                 self._advance(lambda: False, self.engine.cycle + 1)
+                if (failure := self.kernel.take_failure()) is not None:
+                    self._on_note(f"the bench failed between programs: {type(failure).__name__}: {failure}")
             else:
                 door.wait(IDLE_S)
 

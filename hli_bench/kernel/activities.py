@@ -39,9 +39,9 @@ class Measuring:
         self._monitoring = monitoring
         self._run = run
         self._done = done
+        self._sequence = Sequence(measurement.table(run), run, measurement.arming(run), core.watches)
         if run.fixed_stop:
             self._lag_monitoring(on=False)
-        self._sequence = Sequence(measurement.table(run), run, measurement.arming(run), core.watches)
 
     def step(self) -> bool:
         """Go on with its phases."""
@@ -59,8 +59,10 @@ class Measuring:
     def abort(self) -> None:
         """Switch the sources off; what was latched counts."""
         self._sequence.abort()
-        measurement.abort(self._run)
-        self._end()
+        try:
+            measurement.abort(self._run)
+        finally:
+            self._end()
 
     def _end(self) -> None:
         if self._run.fixed_stop:

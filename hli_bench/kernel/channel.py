@@ -35,6 +35,7 @@ from hli_bench.kernel.records import CncError, MeasuredValue, MessageText, Unmea
 from hli_bench.kernel.watches import cycle_reached, jog_stopped, path_done, segment_reached
 from hli_bench.laws.rows import FOLLOW, SEGMENTS
 from hli_bench.manual.axis.words import ProbingSignal
+from hli_bench.manual.errors import by_number
 from hli_bench.manual.errors import path_interpolator as errors
 from hli_bench.manual.errors import position_controller as position_errors
 
@@ -99,7 +100,7 @@ class Channel:
 
     def start(self, decoder: Decoder) -> None:
         """Begin a program."""
-        self._core.failed = False
+        self._core.forgive()
         self._decoder = decoder
         self._items = decoder.blocks()
         self._answer = None
@@ -124,26 +125,37 @@ class Channel:
         for handle in self._wake:
             self._core.watches.forget(handle)
         self._wake.clear()
-        if not self.running:
-            return
-        if self._core.failed:
-            self._stop()
+        if not self.running or self._has_failed():
             return
         self._path.cut(self._texts)
         self._hand_out_texts()
         for _ in range(STEPS):
-            if not (self.running and self._proceed()):
-                return
-            if self._has_failed():
-                self._stop()
+            if not self._proceed() or not self.running or self._has_failed():
                 return
         self._go_on_in_next_cycle()
 
-    def abort(self) -> None:
-        """End the program (CNC reset); what moves is braked, the next program begins when it stands."""
-        if self._activity is not None:
-            self._activity.abort()
-        self._core.path.stop()
+    def break_off(self) -> bool:
+        """Go on with nothing that has not begun; tell whether an activity was broken off."""
+        activity, self._activity = self._activity, None
+        self._barrier = self._postponed = None
+        if activity is not None:
+            activity.abort()
+        return activity is not None
+
+    def wind_up(self, *, run_out: bool) -> None:
+        """End a program that was broken off as soon as nothing moves; what runs out brings its texts."""
+        if not self.running:
+            return
+        if run_out:
+            self._path.cut(self._texts)
+            self._hand_out_texts()
+        if self._core.at_rest:
+            self._end(completed=False)
+        else:
+            self._wait_for_rest()
+
+    def end(self) -> None:
+        """End the program at once (CNC reset); the next one begins when what moves stands."""
         self._end(completed=False)
 
     def _go_on_in_next_cycle(self) -> None:
@@ -225,8 +237,7 @@ class Channel:
             case DriveWrite(synchronous=False):
                 self._activity = DriveObject.begin(self._core, self._objects, item)
             case CncError():
-                self._core.emitted.append(item)
-                self._core.failed = self._core.failed or item.severity == "error"
+                self._core.take(item, by_number()[item.number].reaction_class)
             case _:
                 self._barrier = item
         return True
@@ -349,19 +360,6 @@ class Channel:
             latched=dict(self._latched),
             referenced={axis.index: core.referenced[axis.index] for axis in core.setup.axes},
         )
-
-    def _stop(self) -> None:
-        """An error ends the program: what runs is braked, then it is over."""
-        core = self._core
-        if self._activity is not None:
-            self._activity.abort()
-            self._activity = None
-        self._barrier = self._postponed = None
-        if core.at_rest:
-            self._end(completed=False)
-            return
-        core.path.stop()
-        self._wait_for_rest()
 
     def _end(self, *, completed: bool) -> None:
         if self._items is not None:

@@ -11,7 +11,7 @@ from hli_bench.kernel.records import CncError, Emitted
 from hli_bench.kernel.setup import AxisSetup, KernelSetup
 from hli_bench.kernel.watches import Watches, room
 from hli_bench.laws.rows import JOG, PATH, KernelRows, Rows
-from hli_bench.manual.errors import ErrorSheet, Severity
+from hli_bench.manual.errors import ErrorSheet, ReactionClass, Severity
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
 from hli_bench.protocols.hli.image import Image
 from hli_bench.wire.can import CanFrame
@@ -36,6 +36,10 @@ class Core:
     """Axes whose drives are on their way into operation."""
     disarmed: dict[AxisIndex, int] = field(default_factory=dict)
     """Cycle in which an axis' latch control word was cleared last."""
+    faults: list[tuple[ReactionClass, AxisIndex | None]] = field(default_factory=list)
+    """Reaction class and axis of the errors whose reaction is still to come."""
+    stopping: int = 0
+    """How hard the axes have been stopped since the last program start, see `reactions.Stop`."""
     failed: bool = False
     """An error (not a warning) has been emitted since the last program start or reset."""
 
@@ -81,6 +85,12 @@ class Core:
         """No set point moves."""
         return self.path.idle and not self.self_moving
 
+    def forgive(self) -> None:
+        """Forget the errors: a program begins, or the CNC is reset."""
+        self.failed = False
+        self.faults.clear()
+        self.stopping = 0
+
     def take_back(self) -> None:
         """Give axes whose own motion was broken off (homing) back to the path; they stand."""
         mode = self.rows.axis["mode"]
@@ -115,14 +125,19 @@ class Core:
 
         `cause` is what the bench knows beyond the message of the CNC.
         """
-        self.emitted.append(
-            CncError(
-                number=sheet.number,
-                severity=sheet.severity,
-                text=sheet.message(values) + (f": {cause}" if cause else ""),
-                source=source,
-                axis=self.axis(axis).name if axis is not None else "",
-                values=dict(zip(sheet.values, values, strict=False)),
-            )
+        error = CncError(
+            number=sheet.number,
+            severity=sheet.severity,
+            text=sheet.message(values) + (f": {cause}" if cause else ""),
+            source=source,
+            axis=self.axis(axis).name if axis is not None else "",
+            values=dict(zip(sheet.values, values, strict=False)),
         )
-        self.failed = self.failed or sheet.severity is Severity.ERROR
+        self.take(error, sheet.reaction_class, axis)
+
+    def take(self, error: CncError, reaction: ReactionClass, axis: AxisIndex | None = None) -> None:
+        """Emit an error or warning that has been made; an error is reacted to in this cycle."""
+        self.emitted.append(error)
+        if error.severity == Severity.ERROR:
+            self.failed = True
+            self.faults.append((reaction, axis))

@@ -1,6 +1,7 @@
 """The kernel as one node: the order of its cycle, and the only place that brings the stages together."""
 
 from collections.abc import Iterable
+from contextlib import suppress
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from hli_bench.kernel.decoder import WITHOUT_MOTION, Decoder, DecoderAxis, Decod
 from hli_bench.kernel.drive_manager.manager import DriveManager
 from hli_bench.kernel.hindrances import holding, in_vain, unheard
 from hli_bench.kernel.monitoring import Monitoring
+from hli_bench.kernel.reactions import Stop, react
 from hli_bench.kernel.records import Emitted
 from hli_bench.kernel.setup import KernelSetup
 from hli_bench.laws.rows import KernelRows
@@ -41,6 +43,8 @@ class Kernel:
         self._monitoring = Monitoring(self.core)
         self.drives = DriveManager(self.core, self._monitoring)
         self.channel = Channel(self.core, self.drives.objects, self._monitoring)
+        self.failure: Exception | None = None
+        """What went wrong in a cycle that is none of the CNC's errors: bad NC text, something not built, a fault."""
         layout = self.image.layout
         areas = [f"ax/{axis.number}/lr_state" for axis in setup.axes]
         offsets = np.array([layout.element(f"{area}/active_position_r").offset for area in areas])
@@ -67,14 +71,56 @@ class Kernel:
         self.channel.start(decoder)
 
     def decide(self) -> None:
-        """Decide what comes next: called between `sense` and `act`, `core.cycle` being the cycle."""
-        core = self.core
-        for unit in core.units.sample():
+        """Decide what comes next: called between `sense` and `act`, `core.cycle` being the cycle.
+
+        Nothing raises out of it but an interrupt: what goes wrong is kept in `failure`, and the axes brake.
+        """
+        try:
+            self._go_on()
+        except BaseException as error:
+            self._break_off(error)
+            if not isinstance(error, Exception):
+                raise
+        finally:
+            if self.core.failed:
+                self._wind_up()
+
+    def _go_on(self) -> None:
+        for unit in self.core.units.sample():
             self._unit_changed(unit)
         self._monitoring.check(self.channel.source)
         self.drives.step(self.channel.source)
         self.channel.step()
         self.drives.serve_objects()
+
+    def _break_off(self, error: BaseException) -> None:
+        """Something raised: leave nothing behind of what was under way. Its own clean-up may be what has failed."""
+        core = self.core
+        core.failed = True
+        if self.failure is None and isinstance(error, Exception):
+            self.failure = error
+        with suppress(Exception):
+            self.channel.break_off()
+        core.rows.axis["probe_function"] = 0
+        for axis in self.setup.axes:
+            core.show(axis.index, "lr_state/measurement_active_r", False)
+        react(core, Stop.FEEDHOLD)
+
+    def _wind_up(self) -> None:
+        """Errors act in the cycle in which they come, whoever reported them; then the program ends."""
+        core = self.core
+        try:
+            broken = self.channel.break_off()
+        except Exception as error:
+            self._break_off(error)
+            broken = True
+        react(core, Stop.FEEDHOLD if broken else Stop.NONE)
+        self.channel.wind_up(run_out=core.stopping <= Stop.RUN_OUT)
+
+    def take_failure(self) -> Exception | None:
+        """Return what went wrong in a cycle that is none of the CNC's errors, once."""
+        failure, self.failure = self.failure, None
+        return failure
 
     def begin_cycle(self, cycle: int) -> None:
         """Tell the kernel which cycle it is in."""
@@ -92,8 +138,13 @@ class Kernel:
 
     def reset(self) -> None:
         """CNC reset: end the program, clear errors, bring drives that dropped out back into operation."""
-        self.channel.abort()
-        self.core.failed = False
+        try:
+            self.channel.break_off()
+        except Exception as error:
+            self._break_off(error)
+        react(self.core, Stop.FEEDHOLD)
+        self.channel.end()
+        self.core.forgive()
         for axis in self.setup.axes:
             self.core.show(axis.index, "head/error_r", False)
         self.drives.reset()

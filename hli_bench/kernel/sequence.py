@@ -100,11 +100,16 @@ class Sequence(Generic[Context]):
         if phase == END:
             return
         row = self._table[phase]
-        row.motion(self.context)
-        for way in row.ways:
-            until = way.until(self.context)
-            armed = until if isinstance(until, Level) else self._watches.watch(until)
-            self._armed.append((way, armed))
+        try:
+            row.motion(self.context)
+            for way in row.ways:
+                until = way.until(self.context)
+                armed = until if isinstance(until, Level) else self._watches.watch(until)
+                self._armed.append((way, armed))
+        except BaseException:
+            # Nobody may know of it yet: what it watches is taken back here.
+            self.abort()
+            raise
 
     def _disarm(self, ways: list[Then[Context]]) -> None:
         """Take the conditions of these ways back."""

@@ -9,6 +9,7 @@ from hli_bench import Bench
 from hli_bench.base.errors import BenchError, InputError, NotEmulated
 from hli_bench.bench import plc_ports
 from hli_bench.bench.bench import WITHOUT_MOTION_PACED
+from hli_bench.kernel.records import CncError
 
 
 def test_a_program_that_breaks_off_leaves_no_gap_in_time() -> None:
@@ -131,9 +132,11 @@ def test_a_limit_is_over_with_the_cycle_in_which_it_is_reached(limit_s: float, c
 @pytest.mark.parametrize(("reaction", "errors"), [("fault", [70020, 70222]), ("status", [70020])])
 def test_a_machine_chooses_what_its_drives_do_at_a_following_error(reaction: str, errors: list[int]) -> None:
     settings = {"axis.Z.following_error": reaction, "plant.stop.Z.at_mm": 290, "plant.stop.Z.side": "below"}
-    with Bench("demo", settings, plc=[]) as bench:
-        result = bench.run("N10 G90 G01 Z250 F6000\nN20 M30\n")
-    assert [error.id for error in result.errors] == errors
+    found: list[object] = []
+    with Bench("demo", settings, plc=[], on_record=found.append) as bench:
+        bench.run("N10 G90 G00 Z250\nN20 M30\n")
+        bench.advance(100)
+    assert [error.number for error in found if isinstance(error, CncError)] == errors
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from itertools import groupby
 
-from hli_bench.base.errors import NotEmulated
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.blocks import Home
 from hli_bench.kernel.core import Core
@@ -38,7 +37,11 @@ class HomingOrder:
             group = next(self._groups, None)
             if group is None:
                 return True
-            self._running = [run for axis in group if (run := self._begin(axis)) is not None]
+            self._running = []
+            for axis in group:
+                # Kept one by one: those that are on their way can be stopped whatever becomes of the next.
+                if (run := self._begin(axis)) is not None:
+                    self._running.append(run)
         return False
 
     def abort(self) -> None:
@@ -63,8 +66,6 @@ class HomingOrder:
         if kenngr.homing.homing_type is HomingType.DISABLED:
             self._core.report(errors.HOMING_DISABLED, self._block.source, setup.number, axis=axis)
             return None
-        if setup.kind == "S":
-            raise NotEmulated(f"homing of spindle {setup.name} (homing manual 2.3.2)")
         self._core.referenced[axis] = False
         self._core.show(axis, "lr_state/homing_done_r", False)
         run = homing.Run(self._core, self._block.source, axis, float(self._core.row(axis)["actual"]))

@@ -248,6 +248,9 @@ def _home(context: Context, words: Words, scanner: Scanner) -> Steps:
     _need_axes(words, scanner, "G74")
     ranks: dict[AxisIndex, int] = {}
     for axis, rank in words.axes:
+        if not context.path_axis(axis):
+            name = context.axes[axis].name
+            raise scanner.not_emulated(f"G74: homing of spindle {name} (homing manual 2.3.2)", words.at)
         if rank != int(rank) or rank < 1:
             raise CncStop(errors.HOMING_RANK_RANGE, scanner.block.source)
         ranks[axis] = int(rank)

@@ -58,7 +58,7 @@ class Path:
         return int(self._rows.path[0]["tail"])
 
     def drop(self) -> None:
-        """Drop all that is prepared; the path must stand."""
+        """Drop all that is prepared; the path must stand, or its axes go on by themselves."""
         path = self._rows.path[0]
         path["state"], path["s"], path["v"] = IDLE, 0.0, 0.0
 

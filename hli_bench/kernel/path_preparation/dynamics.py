@@ -11,6 +11,7 @@ from hli_bench.kernel.setup import AxisSetup
 from hli_bench.laws.rows import DYNAMICS, Rows
 from hli_bench.manual.axis.fallbacks import (
     TwoStepSlope,
+    emergency_deceleration,
     feed_slope,
     feedhold_deceleration,
     homing_acceleration,
@@ -78,6 +79,16 @@ def measuring(axis: AxisSetup, channel: ChannelParams) -> tuple[Dynamics, Ramp]:
 def homing_rate(axis: AxisSetup) -> float:
     """Return the acceleration of homing motions (P-AXIS-00285, else the smaller of 00005 and 00006), 0.1 um/s2."""
     return tenth_um_per_s2(homing_acceleration(axis.params.getriebe[0]))
+
+
+def emergency_rate(axis: AxisSetup) -> float:
+    """Return the deceleration of an emergency stop (P-AXIS-00003, else 00008), 0.1 um/s2."""
+    return tenth_um_per_s2(emergency_deceleration(axis.params.getriebe[0]))
+
+
+def controlled_rate(axis: AxisSetup) -> float:
+    """Return the deceleration of an axis that stops by itself with its loop closed, as at feedhold, 0.1 um/s2."""
+    return tenth_um_per_s2(feedhold_deceleration(axis.params.getriebe[0]))
 
 
 def rows(kinds: Iterable[Iterable[Dynamics]]) -> Rows:

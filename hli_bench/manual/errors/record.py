@@ -22,6 +22,7 @@ class ReactionClass(IntEnum):
     STOP_AXIS = 5
     STOP_ALL = 6
     CONTROLLED_STOP = 7
+    OPEN_LOOP_STOP = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

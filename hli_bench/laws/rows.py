@@ -155,6 +155,7 @@ SWITCH: Final = np.dtype(
     [
         ("signal", "i4"),
         ("axis", "i4"),
+        ("weight", "i4"),  # what it counts for its signal while it holds
         ("low", "f8"),  # operated inside [low, high], rad of the axis' motor
         ("high", "f8"),
         ("hysteresis", "f8"),  # released beyond low - hysteresis, high + hysteresis, rad
@@ -168,7 +169,8 @@ SWITCH: Final = np.dtype(
 
 SIGNAL: Final = np.dtype(
     [
-        ("operated", "i4"),  # how many switches hold it
+        ("operated", "i4"),  # weight of the switches that hold it
+        ("needed", "i4"),  # weight from which on it is operated
         ("level", "u1"),
         ("forced", "i1"),  # -1 none, else the level it is stuck at
     ],
@@ -360,6 +362,8 @@ class MachineRows:
         rows.servo["resting_limit"] = -1.0
         rows.servo["input_signal"] = -1
         rows.signal["forced"] = -1
+        rows.signal["needed"] = 1
+        rows.switch["weight"] = 1
         rows.channel["signal"] = -1
         rows.channel["level_due_ns"] = np.iinfo(np.int64).max
         return rows

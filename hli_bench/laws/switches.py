@@ -75,7 +75,7 @@ def signal_level(row: Row) -> int:
     """Return the level that wires carry: forced (a fault) or operated."""
     if row["forced"] >= 0:
         return int(row["forced"])
-    return 1 if row["operated"] > 0 else 0
+    return 1 if row["operated"] >= row["needed"] else 0
 
 
 @law
@@ -141,7 +141,7 @@ def switches(
         at = switch_change(switch[s], angles[sub], angles[sub + 1], begin_ns, step_ns)
         if at < 0:
             continue
-        change = 1 if switch[s]["state"] else -1
+        change = switch[s]["weight"] if switch[s]["state"] else -switch[s]["weight"]
         put_pending(pending, edges, at, switch[s]["signal"], change)
         bounce = switch[s]["bounce_ns"]
         # A bounce is left out before a change of the switch itself, for which each keeps a place, would be.

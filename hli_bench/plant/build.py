@@ -18,6 +18,8 @@ NOISE_LIMIT: Final = 4.0
 """The spread of the probe is cut at so many sigma."""
 PENDING_PER_SWITCH: Final = 16
 """Coming changes (contact bounce) that one switch may have at a time."""
+MAIN_AXES: Final = ("X", "Y", "Z")
+"""Axes whose faces are the sides of one body; a face of another axis stands alone."""
 OPERATION_OFF: Final = 0xFFFFFFFF
 """6065: following error is not watched."""
 
@@ -60,6 +62,7 @@ def build(settings: PlantSettings, channels: Sequence[Channel] = ()) -> Plant:
     for number, axis in enumerate(axes):
         _servo(rows.servo, number, axis, signals)
     _switches(rows.switch, settings)
+    rows.signal[0]["needed"] = _sides(settings)
     for number, channel in enumerate(channels):
         row = rows.channel[number]
         row["signal"] = signals.index(channel.signal)
@@ -134,6 +137,7 @@ def _switches(rows: Rows, settings: PlantSettings) -> None:
             _face(row, axis, settings.probe, _spread(settings.seed, axis.name))
             row["signal"] = 0
             row["axis"] = number
+            row["weight"] = 1 if axis.name in MAIN_AXES else _sides(settings)
         if axis.cam is not None:
             row = rows[used]
             used += 1
@@ -142,6 +146,11 @@ def _switches(rows: Rows, settings: PlantSettings) -> None:
             row["low"] = axis.cam.from_mm / per_rad
             row["high"] = axis.cam.to_mm / per_rad
             row["hysteresis"] = axis.cam.hysteresis_um * 1e-3 / per_rad
+
+
+def _sides(settings: PlantSettings) -> int:
+    """Return the weight at which the probe is operated: faces of the main axes are the sides of one body."""
+    return max(sum(axis.face is not None and axis.name in MAIN_AXES for axis in settings.axes), 1)
 
 
 def _face(row: Rows, axis: PlantAxis, probe: Probe, spread: NDArray[np.float64]) -> None:
@@ -178,8 +187,8 @@ def _settle(rows: MachineRows) -> None:
         shift = row["noise"][row["noise_index"]]
         angle = rows.servo[row["axis"]]["angle"]
         row["state"] = row["low"] + shift <= angle <= row["high"] - shift
-        rows.signal[row["signal"]]["operated"] += row["state"]
-    rows.signal["level"] = rows.signal["operated"] > 0
+        rows.signal[row["signal"]]["operated"] += row["state"] * row["weight"]
+    rows.signal["level"] = rows.signal["operated"] >= rows.signal["needed"]
     for channel in rows.channel:
         if channel["signal"] >= 0:
             level = rows.signal[channel["signal"]]["level"]

@@ -96,19 +96,20 @@ def test_pretravel_goes_into_the_material_and_release_is_at_the_face(rig: Any, a
     assert off == pytest.approx([1.0], abs=2e-4)
 
 
-def test_all_faces_feed_one_signal(rig: Any, axis: Any) -> None:
+def test_the_probe_is_operated_inside_all_faces_of_the_main_axes(rig: Any, axis: Any) -> None:
     faces = [axis("X", face=Face(mm=1.0, material="above")), axis("Z", face=Face(mm=-1.0, material="below"))]
     bench = rig(faces)
     bench.move(10.0, 150, axis=0)
+    bench.wait(200)
+    assert (bench.rows.signal[0]["operated"], bench.rows.signal[0]["level"]) == (1, 0)
     bench.move(-10.0, 150, axis=1)
+    bench.wait(200)
     assert [(s, level) for _, s, level in bench.edges()] == [(0, 1)]
     assert bench.rows.signal[0]["operated"] == 2
     bench.move(-10.0, 150, axis=0)
     bench.wait(200)
-    assert bench.rows.signal[0]["level"] == 1
-    bench.move(10.0, 150, axis=1)
-    bench.wait(200)
     assert [(s, level) for _, s, level in bench.edges()] == [(0, 1), (0, 0)]
+    assert bench.rows.signal[0]["operated"] == 1
 
 
 def test_bounce_is_a_train_of_edges_that_ends_at_the_new_level(rig: Any, axis: Any) -> None:

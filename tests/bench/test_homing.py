@@ -360,8 +360,8 @@ def test_missing_zero_pulse_ends_at_the_longest_way(make, errors, recorder):
     ],
     ids=["cam", "zero pulse"],
 )
-def test_what_never_comes_ends_at_twice_the_software_limits(make, errors, never):
-    """100 mm between the limits: 200 mm from the begin of the homing, then the axis brakes."""
+def test_what_never_comes_ends_at_the_way_between_the_software_limits(make, errors, never):
+    """100 mm between the limits and a tenth more from the begin of the homing, then the axis brakes."""
     limits = {"axis.X.kenngr.swe_neg": -600_000, "axis.X.kenngr.swe_pos": 400_000}
     settings = axis("X", 0.0, **{"getriebe[0].vb_reflow": FAST_UM}) | limits | never
     bench = make(settings)
@@ -370,7 +370,8 @@ def test_what_never_comes_ends_at_twice_the_software_limits(make, errors, never)
 
     assert errors(result) == [(70394, "X", "N10")]
     assert not result.homing
-    assert -202.0 < truth_mm(bench, X) < -200.0
+    assert "has not come" in result.errors[0].text
+    assert -112.0 < truth_mm(bench, X) < -110.0
     assert bench.kernel.core.at_rest
     assert bench.run("%p\nN10 G01 X-150 F6000\nN20 M30\n").completed
     bench.advance(SETTLE)
@@ -502,3 +503,83 @@ def test_rotary_axis_homes_as_a_linear_one(make):
 def test_spindle_homing_is_not_built(make):
     with pytest.raises(NotEmulated, match="spindle S"):
         home(make(), "S1")
+
+
+INVERTED = """
+from hli_bench.plc import Plc
+
+class Inverted(Plc):
+    def start(self, hli, io):
+        axis = hli.ax[1]
+        axis.head.plc_present_w = True
+        axis.lr_mc_control.reference_cam.enable_w = True
+        axis.lr_mc_control.reference_cam.command_w = True
+
+    def cycle(self, hli, io):
+        hli.ax[1].lr_mc_control.reference_cam.command_w = not io.cams.ch1.input
+"""
+LIMITS = {"axis.X.kenngr.swe_neg": -600_000, "axis.X.kenngr.swe_pos": 400_000}
+
+
+def test_an_inverted_cam_signal_ends_at_the_same_guard(make, errors, script):
+    """Off the cam it never comes: away from it, 110 mm from the begin, and no further."""
+    bench = make(axis("X", 0.0) | LIMITS, plc=[script(INVERTED)])
+    result = home(bench)
+    bench.advance(SETTLE)
+
+    assert errors(result) == [(70394, "X", "N10")]
+    assert "the cam is operated" in result.errors[0].text
+    assert 110.0 < truth_mm(bench, X) < 112.0
+    assert bench.kernel.core.at_rest
+
+
+def test_the_way_off_the_cam_is_limited_by_p_axis_00531(make, errors, script):
+    settings = axis("X", 0.0, **{"lr_hw[0].move_from_cam_max_dist": 50_000})
+    bench = make(settings | LIMITS, plc=[script(INVERTED)])
+    result = home(bench)
+    bench.advance(SETTLE)
+
+    assert errors(result) == [(70523, "X", "N10")]
+    assert 5.0 < truth_mm(bench, X) < 5.5
+    assert not bench.kernel.core.referenced[X]
+
+
+def test_a_cam_that_is_run_over_is_an_error_and_not_the_begin_of_an_endless_search(make, errors):
+    bench = make(axis("X", 0.0) | {"plant.cam.X.from_mm": -51.0})
+    result = home(bench)
+    bench.advance(SETTLE)
+
+    assert errors(result) == [(70523, "X", "N10")]
+    assert "too short" in result.errors[0].text
+    assert truth_mm(bench, X) > -60.0
+
+
+FADING = """
+from hli_bench.plc import Plc
+
+class Fading(Plc):
+    def start(self, hli, io):
+        self.seen = 0
+        axis = hli.ax[1]
+        axis.head.plc_present_w = True
+        axis.lr_mc_control.reference_cam.enable_w = True
+
+    def cycle(self, hli, io):
+        cam = io.cams.ch1.input
+        self.seen += bool(cam)
+        hli.ax[1].lr_mc_control.reference_cam.command_w = cam and self.seen < {cycles}
+"""
+
+
+@pytest.mark.parametrize("cycles", [200, 300, 400])
+def test_a_cam_that_does_not_come_back_ends_the_search_where_it_must_be(make, errors, script, cycles):
+    """Whatever the instant at which the signal is lost: an error, no reference, never past the cam by much."""
+    bench = make(axis("X", 0.0), plc=[script(FADING.format(cycles=cycles))])
+    result = home(bench)
+    bench.advance(SETTLE)
+
+    assert len(result.errors) == 1
+    assert result.errors[0].id in (70380, 70394, 70523)
+    assert truth_mm(bench, X) > -60.0
+    assert bench.kernel.core.at_rest
+    assert not bench.kernel.core.referenced[X]

@@ -107,3 +107,15 @@ class LrHw:
             effect=Effect.EMULATED,
         ),
     )
+    move_from_cam_max_dist: int = param(
+        0,
+        Sheet(
+            number="P-AXIS-00531",
+            data_type=DataType.SGN32,
+            low=0,
+            units=LENGTH,
+            doc="Longest path off the reference cam; 0 off.",
+            source="TF5200 axis parameters 1.172",
+            effect=Effect.EMULATED,
+        ),
+    )

@@ -210,7 +210,14 @@ CHANGE_WHILE_MEASURING: Final[ErrorSheet] = axis_error(
     "logical axis number",
 )
 HOMING_PATH: Final[ErrorSheet] = axis_error(
-    "homing_path", 70_394, "axis {0}: longest homing path exceeded (P-AXIS-00412)", "logical axis number"
+    "homing_path",
+    70_394,
+    "axis {0}: homing has gone {2} from where it began, allowed {1}",
+    "logical axis number",
+    "longest path [0.1 um]",
+    "path [0.1 um]",
+    "set point [0.1 um]",
+    "modulo range [0.0001 degree]",
 )
 REFERENCE_LOST: Final[ErrorSheet] = axis_error(
     "reference_lost", 70_400, "axis {0} lost its reference", "logical axis number"
@@ -267,7 +274,13 @@ MASTER_NOT_PROGRAMMED: Final[ErrorSheet] = axis_error(
     "logical axis number",
 )
 PATH_OFF_CAM: Final[ErrorSheet] = axis_error(
-    "path_off_cam", 70_523, "axis {0}: path off the cam exceeded", "logical axis number"
+    "path_off_cam",
+    70_523,
+    "axis {0}: path off the cam is {1}, allowed {2}",
+    "logical axis number",
+    "path [0.1 um]",
+    "longest path [0.1 um]",
+    "set point [0.1 um]",
 )
 FIXED_STOP_ACTIVE: Final[ErrorSheet] = axis_error(
     "fixed_stop_active", 70_538, "axis {0}: move to fixed stop is already active", "logical axis number"

@@ -30,6 +30,9 @@ class Run:
     axis: AxisIndex
     begin: float = 0.0
     """Where the axis stood before, 0.1 um."""
+    turned: float = 0.0
+    """Where it set out last, 0.1 um, and `before` that."""
+    before: float = 0.0
     method: str = ""
 
     @property

@@ -5,6 +5,7 @@ Source: homing manual 2.3.1; P-AXIS-00064, 00084, 00152, 00158, 00218, 00219.
 
 from functools import partial
 
+from hli_bench.base.units import tenth_um_from_um_per_s
 from hli_bench.kernel.position_controller.homing import (
     Run,
     cam,
@@ -25,6 +26,8 @@ ZERO_PULSE = 0x15
 """Touch probe function: enable, encoder zero pulse, positive edge."""
 STORED = 0x02
 ENDLESS = 1 << 53
+PAST_CAM = 10_000.0
+"""0.1 um (0.0001 degree): what the axis may go behind the place where it should find the cam again (decided here)."""
 LONGEST_WAY = 100_000_000
 """10 m in 0.1 um."""
 LONGEST_TURN = 36_000_000
@@ -47,12 +50,14 @@ def table(run: Run) -> Table[Run]:
     found = Then(on, "stop", _reference_here) if by_cam else Then(on, "on cam")
     lost = Then(off, "lost", _no_zero_pulse)
     endless = Then(_beyond, "lost", _path_exceeded)
+    stuck = Then(_too_far_off, "lost", _cam_stays)
+    gone = Then(_behind_cam, "lost", _cam_gone)
     return {
         "to cam": Phase(_move(gear.vb_refmax), (Then(on, "stop on cam"), endless)),
-        "stop on cam": Phase(_stop, (Then(_stands, "off cam"),)),
-        "off cam": Phase(_move(away, -1), (Then(off, "stop off cam"), endless)),
+        "stop on cam": Phase(_stop, (Then(_stands, _on_cam),)),
+        "off cam": Phase(_move(away, -1), (Then(off, "stop off cam"), stuck, endless)),
         "stop off cam": Phase(_stop, (Then(_stands, "search"),)),
-        "search": Phase(_move(gear.vb_reflow), (found, endless)),
+        "search": Phase(_move(gear.vb_reflow), (found, gone, endless)),
         "on cam": Phase(_nothing, (Then(_activated, "zero pulse"), lost, endless)),
         "zero pulse": Phase(
             _arm_zero_pulse,
@@ -73,7 +78,58 @@ def _move(velocity: int, sign: int = 1) -> "partial[None]":
 
 
 def _jog(velocity: int, sign: int, run: Run) -> None:
+    run.before, run.turned = run.turned, _here(run)
     jog(run, sign * run.direction, velocity)
+
+
+def _here(run: Run) -> float:
+    return float(run.core.row(run.axis)["actual"])
+
+
+def _on_cam(run: Run) -> str:
+    """Phase 2 needs the axis on the cam: one that has run over it does not know on which side it stands."""
+    if cam_operated(run):
+        return "off cam"
+    _report_off_cam(run, "the axis has stopped behind the reference cam: it is too short for P-AXIS-00219")
+    return "lost"
+
+
+def _too_far_off(run: Run) -> Until:
+    """P-AXIS-00531: longest way off the cam, 0 is off."""
+    return _moved(run, run.setup.params.lr_hw[0].move_from_cam_max_dist or ENDLESS)
+
+
+def _cam_stays(run: Run) -> None:
+    _report_off_cam(run, "the reference cam stays operated")
+
+
+def _report_off_cam(run: Run, cause: str) -> None:
+    way, longest = abs(_here(run) - run.turned), run.setup.params.lr_hw[0].move_from_cam_max_dist
+    run.core.report(
+        errors.PATH_OFF_CAM,
+        run.source,
+        run.setup.number,
+        round(way),
+        longest,
+        round(float(run.core.row(run.axis)["command"])),
+        axis=run.axis,
+        cause=cause,
+    )
+
+
+def _behind_cam(run: Run) -> Until:
+    """The axis is back where it came off the cam."""
+    return _moved(run, round(_way_back(run)))
+
+
+def _way_back(run: Run) -> float:
+    """Return on which way the cam must come again, and what a PLC may need to tell it: half a second, 1 mm."""
+    slow = tenth_um_from_um_per_s(run.setup.params.getriebe[0].vb_reflow)
+    return abs(run.turned - run.before) + 0.5 * slow + PAST_CAM
+
+
+def _cam_gone(run: Run) -> None:
+    _report_path(run, _way_back(run), run.turned, "the reference cam has not come back")
 
 
 def _stop(run: Run) -> None:
@@ -106,19 +162,36 @@ def _beyond(run: Run) -> Until:
     return moved(run.axis, float(longest_way(run.setup)), run.begin)
 
 
+def _report_path(run: Run, longest: float, begin: float, cause: str) -> None:
+    row, gear = run.core.row(run.axis), run.setup.params.getriebe[0]
+    row["probe_function"] = 0
+    run.core.report(
+        errors.HOMING_PATH,
+        run.source,
+        run.setup.number,
+        round(longest),
+        round(abs(_here(run) - begin)),
+        round(float(row["command"])),
+        gear.moduloo - gear.modulou,
+        axis=run.axis,
+        cause=cause,
+    )
+
+
 def longest_way(axis: AxisSetup) -> int:
     """Return how far from its begin homing may take the axis, 0.1 um (0.0001 degree).
 
-    P-AXIS-00412 for rotary axes and spindles. Without it (decided here) twice the way between software limits
-    that the list sets, else 10 m or 3600 degrees: a cam that never comes must not let the axis run for ever.
+    P-AXIS-00412 for rotary axes and spindles. Without it (decided here) the way between the software limits that the
+    list sets, with the reference position and a tenth more, else 10 m or 3600 degrees: a cam that never comes, or never
+    goes, must not let the axis run for ever.
     """
-    kenngr = axis.params.kenngr
+    kenngr, reference = axis.params.kenngr, axis.params.getriebe[0].pos_refpkt
     if axis.kind != "T":
         return kenngr.homing_max_movement_dist or LONGEST_TURN
     limits = (kenngr.swe_neg, kenngr.swe_pos)
     if kenngr.swe_neg >= kenngr.swe_pos or limits == (_UNSET.swe_neg, _UNSET.swe_pos):
         return LONGEST_WAY
-    return 2 * (kenngr.swe_pos - kenngr.swe_neg)
+    return round(1.1 * (max(kenngr.swe_pos, reference) - min(kenngr.swe_neg, reference)))
 
 
 def _shift(run: Run) -> int:
@@ -152,5 +225,17 @@ def _no_zero_pulse(run: Run) -> None:
 
 
 def _path_exceeded(run: Run) -> None:
-    run.core.row(run.axis)["probe_function"] = 0
-    run.core.report(errors.HOMING_PATH, run.source, run.setup.number, axis=run.axis)
+    rotary = run.setup.params.kenngr.homing_max_movement_dist and run.setup.kind != "T"
+    limit = (
+        "P-AXIS-00412"
+        if rotary
+        else "the way between the software limits, or the longest where there are none"
+    )
+    missing = "the zero pulse" if run.core.row(run.axis)["probe_function"] else "the reference cam"
+    state = "operated" if cam_operated(run) else "not operated"
+    _report_path(
+        run,
+        longest_way(run.setup),
+        run.begin,
+        f"{missing} has not come; the cam is {state}; the limit is {limit}",
+    )

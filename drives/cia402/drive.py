@@ -2,20 +2,21 @@
 
 The compiled laws compute with the row; this class moves numbers between row and object dictionary and runs
 the state machine. It acts at a SYNC, in this order: stops that came to an end, faults that the law raised,
-RPDO data, TPDO samples. Ramps are not emulated: to stop means that the set point stands still at once; the
-stop is over when the axis does, at the latest after STOP_TIMEOUT (decided here).
+RPDO data, TPDO samples. A stop begins where the axis is, with the speed that it has, and follows a ramp (see
+`ramps`); it is over when the axis stands, at the latest STOP_TIMEOUT behind the end of the ramp (decided here).
+Without power the axis coasts.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, fields
-from enum import StrEnum
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, Final
 
 from drives.cia402 import telegram
 from drives.cia402.faults import Fault, error_register
-from drives.cia402.modes import is_supported
+from drives.cia402.modes import Mode, is_supported
+from drives.cia402.options import DriveOptions, FollowingErrorReaction
+from drives.cia402.ramps import DISABLE, STAYS, Ramps
 from drives.cia402.states import (
     ENABLE_OPERATION,
     ControlBit,
@@ -40,7 +41,7 @@ from hli_bench.protocols.canopen.sync import SYNC_COB_ID
 from hli_bench.wire.can import CanFrame
 
 STOP_TIMEOUT: Final = Ns(NS_PER_S)
-"""A stop that lasts longer ends anyway (decided here)."""
+"""A stop that lasts longer than its ramp by this ends anyway (decided here)."""
 STANDSTILL_TURNS_PER_S: Final = 0.01
 """An axis slower than this stands (decided here)."""
 
@@ -50,7 +51,12 @@ _LAW_FLAGS: Final = int(
 _HALT: Final = int(ControlBit.HALT)
 _ALWAYS: Final = int(StatusBit.VOLTAGE_ENABLED | StatusBit.REMOTE)
 _POWERED: Final = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
-_TORQUE_LIMITS: Final = (objects.MAX_TORQUE, objects.POSITIVE_TORQUE_LIMIT, objects.NEGATIVE_TORQUE_LIMIT)
+_TORQUE_LIMITS: Final = {
+    objects.MAX_TORQUE: "torque_limit_permille",
+    objects.POSITIVE_TORQUE_LIMIT: "positive_permille",
+    objects.NEGATIVE_TORQUE_LIMIT: "negative_permille",
+}
+_STOP_OPTIONS: Final = (objects.QUICK_STOP_OPTION, objects.HALT_OPTION, objects.FAULT_REACTION_OPTION)
 _SOURCES: Final = (
     (ProbeSource.INPUT_1, ProbeSource.ZERO_PULSE),
     (ProbeSource.INPUT_2, ProbeSource.ZERO_PULSE),
@@ -74,38 +80,9 @@ _CELLS: Final[Mapping[tuple[int, int], tuple[str, int]]] = {
 }
 """Objects that are a number of the row: its name, its element."""
 
-_QUICK_STOP, _RESET_FAULT = 11, 15
-_STAY_IN_QUICK_STOP: Final = 5
-"""Quick stop options from here on stay in QUICK STOP ACTIVE."""
+_QUICK_STOP, _RESET_FAULT, _RESUME = 11, 15, 16
 _STOP_FIRST: Final = {5: objects.DISABLE_OPERATION_OPTION, 8: objects.SHUTDOWN_OPTION}
 """Transitions whose option 1 brings the axis to a stop before power is cut."""
-
-
-class FollowingErrorReaction(StrEnum):
-    """What leaving the window 0x6065 for longer than 0x6066 does beside statusword bit 13."""
-
-    FAULT = "fault"
-    STATUS = "status"
-
-
-@dataclass(frozen=True, slots=True)
-class DriveOptions:
-    """What a machine folder chooses where drives differ. A window of 0 always means off (decided here)."""
-
-    following_error: FollowingErrorReaction = FollowingErrorReaction.FAULT
-
-    @classmethod
-    def from_mapping(cls, options: Mapping[str, object], drive: str = "") -> "DriveOptions":
-        """Return the options of a table of words. Raises InputError for unknown keys and values."""
-        known = [field.name for field in fields(cls)]
-        for key in options:
-            if key not in known:
-                raise InputError(f"drive {drive}: option {key!r} is none of {', '.join(known)}")
-        word = options.get("following_error", FollowingErrorReaction.FAULT)
-        if word not in list(FollowingErrorReaction):
-            allowed = ", ".join(FollowingErrorReaction)
-            raise InputError(f"drive {drive}: following_error = {word!r} is none of {allowed}")
-        return cls(FollowingErrorReaction(str(word)))
 
 
 class Drive:
@@ -117,10 +94,12 @@ class Drive:
         "_fault",
         "_flags",
         "_law_fault",
+        "_mode",
         "_now",
         "_options",
         "_probe_function",
         "_probe_word",
+        "_ramps",
         "_row",
         "_signature_changes",
         "_signature_default",
@@ -137,6 +116,7 @@ class Drive:
         self.device = device
         self.state = State.SWITCH_ON_DISABLED
         self._row = row
+        self._ramps = Ramps(device.values, row)
         cells = Cells(row)
         self._target = cells("target")
         self._probe_function = cells("probe_function")
@@ -165,7 +145,8 @@ class Drive:
     def holding(self) -> bool:
         """Whether the drive stands on its demand instead of following the target."""
         if self.state is State.OPERATION_ENABLED:
-            return bool(self._word & _HALT) or self._destination is not None
+            halted = bool(self._word & _HALT) or self._mode != Mode.CYCLIC_SYNC_POSITION
+            return halted or self._destination is not None
         stopping = self.state in (State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
         return stopping or self._destination is not None
 
@@ -232,9 +213,10 @@ class Drive:
         self._fault = code
         self.device.values.put(*objects.ERROR_CODE, code)
         self.device.emcy.occur(code, error_register(code))
-        if self._option(objects.FAULT_REACTION_OPTION) and self.state in _POWERED:
+        option = self._option(objects.FAULT_REACTION_OPTION)
+        if option != DISABLE and self.state in _POWERED:
             self._enter(State.FAULT_REACTION_ACTIVE)
-            self._stop(State.FAULT)
+            self._stop(State.FAULT, option)
         else:
             self._enter(State.FAULT)
 
@@ -280,13 +262,16 @@ class Drive:
         self._destination: State | None = None
         self._deadline = Ns(0)
         values, row = self.device.values, self._row
+        self._mode = int(values.stored(*objects.MODE))
+        self._ramps.let_go()
         first, second = (values.stored(*address) for address in objects.PROBE_SOURCES)
         self._sources = (first, second)
         row["fault"] = 0
         row["target"] = values.stored(*objects.TARGET_POSITION)
         row["following_window"] = values.stored(*objects.FOLLOWING_WINDOW)
         row["following_timeout_ms"] = values.stored(*objects.FOLLOWING_TIMEOUT)
-        self._limit_torque(objects.MAX_TORQUE, values.stored(*objects.MAX_TORQUE))
+        for address, number in _TORQUE_LIMITS.items():
+            self._limit_torque(number, values.stored(*address))
         self._write_probe_function(values.stored(*objects.PROBE_FUNCTION))
         self._enter(State.SWITCH_ON_DISABLED)
 
@@ -298,7 +283,7 @@ class Drive:
             objects.STATUSWORD: lambda: self.statusword,
             objects.CONTROLWORD: lambda: self._word,
             objects.PROBE_FUNCTION: self._read_probe_function,
-            objects.MODE_DISPLAY: lambda: self._option(objects.MODE),
+            objects.MODE_DISPLAY: lambda: self._mode,
             objects.RATED_TORQUE: lambda: round(float(self._row["rated_torque"]) * 1000.0),
         }
         for address, source in computed.items():
@@ -315,7 +300,8 @@ class Drive:
             objects.FOLLOWING_WINDOW: partial(row.__setitem__, "following_window"),
             objects.FOLLOWING_TIMEOUT: partial(row.__setitem__, "following_timeout_ms"),
         }
-        sinks |= {address: partial(self._limit_torque, address) for address in _TORQUE_LIMITS}
+        sinks |= {address: partial(self._limit_torque, number) for address, number in _TORQUE_LIMITS.items()}
+        sinks |= dict.fromkeys(_STOP_OPTIONS, self._write_option)
         for slot, address in enumerate(objects.PROBE_SOURCES):
             sinks[address] = partial(self._write_source, slot)
         self.device.values.on_writes(sinks)
@@ -325,22 +311,22 @@ class Drive:
         word, before = int(value), self._word
         if word == before and next_transition(self.state, word, word) is None:
             return
-        was_holding = self.holding
         self._word = word
         if self.state is State.OPERATION_ENABLED and word & ENABLE_OPERATION == ENABLE_OPERATION:
             self._destination = None
         for row in walk(self.state, word, before):
+            if row.number == _RESUME and self._option(objects.QUICK_STOP_OPTION) < STAYS:
+                break
             self._take(row)
-        if self.holding and not was_holding:
-            self._hold()
+        self._hold_or_follow()
 
     def _take(self, row: Transition) -> None:
         """Make a transition, or begin the stop that comes before it."""
         option = _STOP_FIRST.get(row.number)
         if row.number == _QUICK_STOP:
             self._quick_stop()
-        elif option is not None and self._option(option):
-            self._stop(row.target)
+        elif option is not None and self._option(option) != DISABLE:
+            self._stop(row.target, self._option(option))
         else:
             if row.number == _RESET_FAULT:
                 self._reset_fault()
@@ -349,13 +335,14 @@ class Drive:
     def _quick_stop(self) -> None:
         """Stop; by 0x605A at once without power (0), then without power (1..4), or staying so (5..8)."""
         option = self._option(objects.QUICK_STOP_OPTION)
-        if option == 0:
+        if option == DISABLE:
             self._enter(State.SWITCH_ON_DISABLED)
             return
         self._enter(State.QUICK_STOP_ACTIVE)
-        self._hold()
-        if option < _STAY_IN_QUICK_STOP:
-            self._stop(State.SWITCH_ON_DISABLED)
+        if option < STAYS:
+            self._stop(State.SWITCH_ON_DISABLED, option)
+        else:
+            self._ramps.begin(option)
 
     def _reset_fault(self) -> None:
         """Clear the fault; one whose cause persists comes back from the law."""
@@ -366,19 +353,30 @@ class Drive:
         self._fault = 0
 
     def _enter(self, state: State) -> None:
+        """Enter a state. Operation begins with a set point and a target where the axis is."""
+        powered = state in _POWERED
+        if state is State.OPERATION_ENABLED:
+            self._ramps.stand()
         self.state = state
         self._destination = None
-        self._row["enabled"] = state in _POWERED
+        self._row["enabled"] = powered
+        if not powered:
+            self._ramps.let_go()
 
-    def _stop(self, destination: State) -> None:
-        """Stand still, then enter `destination`."""
+    def _stop(self, destination: State, option: int) -> None:
+        """Come to a stop as an option code says, then enter `destination`."""
         if self._destination is not destination:
             self._destination = destination
-            self._deadline = Ns(self._now + STOP_TIMEOUT)
-            self._hold()
+            self._deadline = Ns(self._now + self._ramps.begin(option) + STOP_TIMEOUT)
 
-    def _hold(self) -> None:
-        self._row["target"] = self._row["demand"]
+    def _hold_or_follow(self) -> None:
+        """Begin to halt, or to follow the target again."""
+        if self.state is not State.OPERATION_ENABLED:
+            return
+        if not self.holding:
+            self._ramps.let_go()
+        elif not self._ramps.held:
+            self._ramps.begin(self._option(objects.HALT_OPTION))
 
     def _stands(self) -> bool:
         return abs(int(self._row["velocity"])) <= STANDSTILL_TURNS_PER_S * float(
@@ -386,18 +384,27 @@ class Drive:
         )
 
     def _write_target(self, value: Value) -> None:
-        """Follow the target unless the drive holds."""
-        if not self.holding:
-            self._target[0] = int(value)
+        """Take a target; while the drive holds it does not follow."""
+        self._target[0] = int(value)
 
     def _write_mode(self, value: Value) -> None:
-        if not is_supported(int(value), self._option(objects.SUPPORTED_MODES)):
+        """Change the mode; 0 leaves it as it is."""
+        mode = int(value)
+        if mode == Mode.NONE:
+            return
+        if not is_supported(mode, self._option(objects.SUPPORTED_MODES)):
             raise SdoAbort(AbortCode.RANGE)
+        self._mode = mode
+        self._hold_or_follow()
 
-    def _limit_torque(self, changed: ObjectAddress, value: Value) -> None:
-        """Clamp to the least of 0x6072, 0x60E0, 0x60E1 and the peak torque of the drive."""
-        limits = [self._option(address) for address in _TORQUE_LIMITS if address != changed]
-        self._row["torque_limit_permille"] = min(int(value), *limits, float(self._row["peak_permille"]))
+    def _limit_torque(self, number: str, value: Value) -> None:
+        """Clamp both directions (0x6072), positive (0x60E0) or negative torque (0x60E1), to the peak at the most."""
+        self._row[number] = min(abs(int(value)), float(self._row["peak_permille"]))
+
+    def _write_option(self, value: Value) -> None:
+        """Take a way to stop that is built."""
+        if not self._ramps.is_built(int(value)):
+            raise SdoAbort(AbortCode.RANGE)
 
     def _write_probe_function(self, value: Value) -> None:
         self._probe_word = int(value)

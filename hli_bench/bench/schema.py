@@ -199,6 +199,12 @@ DRIVE_TRAIN: Final = (
     _number("plant.axis.<AXIS>.viscous_nm_s", 0.002, "viscous friction, Nm s/rad", low=0.0),
     _number("plant.axis.<AXIS>.coulomb_nm", 0.05, "dry friction while moving, Nm", low=0.0),
     _number("plant.axis.<AXIS>.static_nm", 0.06, "dry friction at standstill, Nm", low=0.0),
+    _number(
+        "plant.axis.<AXIS>.brake_nm",
+        0.0,
+        "brake that falls in without power, Nm; 0: the axis coasts",
+        low=0.0,
+    ),
     _number("plant.axis.<AXIS>.rated_torque_nm", 15.0, "rated torque of the motor (6076), Nm", above=0.0),
     _number(
         "plant.axis.<AXIS>.peak_permille", 3000.0, "peak torque, per mille of rated", above=0.0, high=32_000.0

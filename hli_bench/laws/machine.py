@@ -12,7 +12,7 @@ from hli_bench.laws.channels import channel_image
 from hli_bench.laws.compiled import law
 from hli_bench.laws.integers import wrap32
 from hli_bench.laws.rows import Rows
-from hli_bench.laws.servo import count, move_axis, rest_axis, servo_span, supervise
+from hli_bench.laws.servo import coast_axis, count, move_axis, servo_span, stop_span, supervise
 from hli_bench.laws.switches import distribute, may_switch, signal_level, switches
 from hli_bench.laws.touch_probe import probe_arm, zero_pulses
 
@@ -41,9 +41,11 @@ def advance_machine(
         probe_arm(row)
         row["status_flags"] = 0
         if row["enabled"]:
+            row["span"] = servo_span(row) if row["stop_rate"] == 0.0 else stop_span(row, cycle)
             move_axis(row, sub_steps, time, cycle)
         else:
-            rest_axis(row, sub_steps)
+            row["span"] = 0.0
+            coast_axis(row, sub_steps, time)
         if row["probe_function"] & 0x0404:
             for sub in range(sub_steps):
                 zero_pulses(row, sub, begin_ns + sub * step_ns, step_ns, dc_epoch_ns)
@@ -63,7 +65,7 @@ def advance_machine(
     faults = 0
     for axis in range(axes):
         row = servo[axis]
-        row["demand_from"] += servo_span(row) if row["enabled"] else 0.0
+        row["demand_from"] += row["span"]
         position = count(row, row["angle"])
         row["position"] = wrap32(position)
         row["demand"] = wrap32(int(math.floor(row["demand_from"] + 0.5)))

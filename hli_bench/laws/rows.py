@@ -101,6 +101,8 @@ SERVO: Final = np.dtype(
         ("following_error", "i4"),
         ("torque_permille", "i2"),
         ("torque_limit_permille", "f8"),
+        ("positive_permille", "f8"),  # limit of positive torque beside it
+        ("negative_permille", "f8"),  # of negative torque, as a positive number
         ("enabled", "u1"),
         ("following_window", "u4"),
         ("following_timeout_ms", "u2"),
@@ -114,6 +116,12 @@ SERVO: Final = np.dtype(
         ("fault", "u2"),
         # loop
         ("demand_from", "f8"),  # increments, start of the interpolation of this cycle
+        ("span", "f8"),  # increments, way of the set point in this cycle
+        (
+            "stop_rate",
+            "f8",
+        ),  # increments/s2 at which the set point comes to a stop by itself, 0: it follows the target
+        ("stop_speed", "f8"),  # increments/s, of that set point
         ("kv", "f8"),  # 1/s
         ("speed_gain", "f8"),  # Nm s/rad
         ("speed_integral_gain", "f8"),  # Nm/rad
@@ -128,6 +136,7 @@ SERVO: Final = np.dtype(
         ("viscous", "f8"),  # Nm s/rad
         ("coulomb", "f8"),  # Nm
         ("static", "f8"),  # Nm
+        ("brake", "f8"),  # Nm, of a brake that falls in without power
         ("increments_per_rad", "f8"),
         ("increments_per_turn", "i8"),
         ("zero_pulse", "i8"),  # count of the zero pulse within a turn
@@ -142,7 +151,7 @@ SERVO: Final = np.dtype(
         ("input_signal", "i4", (8,)),
         ("telegram_input", "u1"),  # probing input (0, 1) whose latches the telegrams carry
         ("probe_function_seen", "u2"),
-        ("resting_limit", "f8"),  # torque limit under which the axis rests, -1 while it does not
+        ("resting_limit", "f8", (2,)),  # torque limits under which the axis rests, -1 while it does not
         ("resting_flags", "u2"),
         ("angle_low", "f8"),  # rad, least and greatest angle of the cycle
         ("angle_high", "f8"),
@@ -360,6 +369,8 @@ class MachineRows:
         )
         rows.servo["probe_signal"] = -1
         rows.servo["resting_limit"] = -1.0
+        rows.servo["positive_permille"] = np.inf
+        rows.servo["negative_permille"] = np.inf
         rows.servo["input_signal"] = -1
         rows.signal["forced"] = -1
         rows.signal["needed"] = 1

@@ -28,6 +28,32 @@ def servo_span(row: Row) -> float:
 
 
 @law
+def stop_span(row: Row, cycle: float) -> float:
+    """Return the way (increments) of a set point that comes to a stop along its ramp, and slow it down."""
+    speed = row["stop_speed"]
+    rate = row["stop_rate"]
+    if abs(speed) <= rate * cycle:
+        row["stop_speed"] = 0.0
+        return 0.5 * speed * abs(speed) / rate
+    step = math.copysign(rate * cycle, speed)
+    row["stop_speed"] = speed - step
+    return (speed - 0.5 * step) * cycle
+
+
+@law
+def pushed(row: Row, angle: float, speed: float) -> float:
+    """Return the torque with which a fixed stop pushes back."""
+    side = row["stop_side"]
+    if side != 0:
+        depth = (angle - row["stop_angle"]) * side
+        if depth > 0.0:
+            push = row["stop_stiffness"] * depth + row["stop_damping"] * speed * side
+            if push > 0.0:
+                return -push * side
+    return 0.0
+
+
+@law
 def move_axis(row: Row, sub_steps: int, time: float, cycle: float) -> None:
     """Move one axis by one cycle: servo and mechanics, sub-step after sub-step of `time` seconds.
 
@@ -35,9 +61,11 @@ def move_axis(row: Row, sub_steps: int, time: float, cycle: float) -> None:
     friction with stiction, fixed stop, inertia, semi-implicit Euler. The angles go into `angles`.
     An axis at rest whose last cycle changed nothing would come out the same again, and is left as it is.
     """
-    whole = servo_span(row)
-    limit = min(row["torque_limit_permille"], row["peak_permille"]) * 1e-3 * row["rated_torque"]
-    if row["resting_limit"] == limit and whole == 0.0:
+    whole = row["span"]
+    both = min(row["torque_limit_permille"], row["peak_permille"])
+    limit = min(both, row["positive_permille"]) * 1e-3 * row["rated_torque"]
+    lower = -min(both, row["negative_permille"]) * 1e-3 * row["rated_torque"]
+    if row["resting_limit"][0] == limit and row["resting_limit"][1] == -lower and whole == 0.0:
         row["status_flags"] |= row["resting_flags"]
         return
     angles = row["angles"]
@@ -53,8 +81,6 @@ def move_axis(row: Row, sub_steps: int, time: float, cycle: float) -> None:
     viscous = row["viscous"]
     coulomb = row["coulomb"]
     static = row["static"]
-    side = row["stop_side"]
-    stop_angle = row["stop_angle"]
     demand_from = row["demand_from"]
     feed_forward = whole / cycle / per_rad
     per_torque = time / inertia
@@ -71,18 +97,12 @@ def move_axis(row: Row, sub_steps: int, time: float, cycle: float) -> None:
         if torque > limit:
             torque = limit
             flags = 0x0800
-        elif torque < -limit:
-            torque = -limit
+        elif torque < lower:
+            torque = lower
             flags = 0x0800
         else:
             integrator += integral_gain * error * time
-        acting = torque
-        if side != 0:
-            depth = (angle - stop_angle) * side
-            if depth > 0.0:
-                push = row["stop_stiffness"] * depth + row["stop_damping"] * speed * side
-                if push > 0.0:
-                    acting -= push * side
+        acting = torque + pushed(row, angle, speed)
         if abs(speed) < STANDSTILL and abs(acting) <= static:
             speed = 0.0
         else:
@@ -102,7 +122,8 @@ def move_axis(row: Row, sub_steps: int, time: float, cycle: float) -> None:
         and angle == row["angle"]
         and integrator == row["integrator"]
     )
-    row["resting_limit"] = limit if rests else -1.0
+    row["resting_limit"][0] = limit if rests else -1.0
+    row["resting_limit"][1] = -lower if rests else -1.0
     row["resting_flags"] = flags
     row["angle"] = angle
     row["speed"] = speed
@@ -114,18 +135,41 @@ def move_axis(row: Row, sub_steps: int, time: float, cycle: float) -> None:
 
 
 @law
-def rest_axis(row: Row, sub_steps: int) -> None:
-    """Let an axis without power stand (its brake holds)."""
+def coast_axis(row: Row, sub_steps: int, time: float) -> None:
+    """Move an axis without power by one cycle: friction, its brake if it has one, a fixed stop. It may stand."""
     angle = row["angle"]
-    row["resting_limit"] = -1.0
-    row["demand_from"] = float(count(row, angle))
+    speed = row["speed"]
+    static = row["static"] + row["brake"]
+    row["resting_limit"][0] = -1.0
+    row["resting_limit"][1] = -1.0
     row["integrator"] = 0.0
-    row["speed"] = 0.0
     row["torque"] = 0.0
-    row["angle_low"] = angle
-    row["angle_high"] = angle
-    for sub in range(sub_steps + 1):
-        row["angles"][sub] = angle
+    row["angles"][0] = angle
+    lowest = angle
+    highest = angle
+    stands = abs(speed) < STANDSTILL and abs(pushed(row, angle, speed)) <= static
+    per_torque = time / row["inertia"] if not stands else 0.0
+    for sub in range(sub_steps):
+        acting = 0.0 if stands else pushed(row, angle, speed)
+        if abs(speed) < STANDSTILL and abs(acting) <= static:
+            speed = 0.0
+        else:
+            friction = math.copysign(
+                row["coulomb"] + row["brake"], acting if abs(speed) < STANDSTILL else speed
+            )
+            after = speed + per_torque * (acting - row["viscous"] * speed - friction)
+            if speed * after < 0.0 and abs(acting) <= static:
+                after = 0.0
+            speed = after
+            angle += after * time
+        row["angles"][sub + 1] = angle
+        lowest = min(lowest, angle)
+        highest = max(highest, angle)
+    row["angle"] = angle
+    row["speed"] = speed
+    row["demand_from"] = float(count(row, angle))
+    row["angle_low"] = lowest
+    row["angle_high"] = highest
 
 
 @law
@@ -142,5 +186,5 @@ def supervise(row: Row, cycle_ns: int) -> None:
             and row["fault"] == 0
         ):
             row["fault"] = FOLLOWING_ERROR
-    if row["enabled"]:
+    if row["enabled"] and row["stop_rate"] == 0.0:
         row["status_flags"] |= 0x1000

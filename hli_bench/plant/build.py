@@ -96,6 +96,7 @@ def _servo(rows: Rows, number: int, axis: PlantAxis, signals: SignalNames) -> No
         "viscous": plant.viscous_nm_s,
         "coulomb": plant.coulomb_nm,
         "static": plant.static_nm,
+        "brake": plant.brake_nm,
         "increments_per_rad": plant.increments_per_turn / math.tau,
         "increments_per_turn": plant.increments_per_turn,
         "zero_pulse": plant.zero_pulse_increments % plant.increments_per_turn,

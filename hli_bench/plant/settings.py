@@ -89,6 +89,8 @@ class AxisPlant:
     kv_per_s: float
     speed_bandwidth_per_s: float
     speed_reset_ms: float
+    brake_nm: float = 0.0
+    """Of a brake that falls in when the drive has no power; 0: there is none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

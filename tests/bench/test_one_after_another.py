@@ -114,7 +114,8 @@ def test_what_an_interrupted_script_had_written_comes_with_its_next_cycle(tmp_pa
 
 @pytest.mark.parametrize("limit_s", [1.5, 1.512, 1.53, 1.56])
 def test_a_drive_that_comes_back_while_the_path_brakes_stands_still(limit_s: float) -> None:
-    with Bench("demo", {"plant.stop.X.at_mm": 400, "plant.stop.X.side": "above"}, plc=[]) as bench:
+    stop = {"plant.stop.X.at_mm": 400, "plant.stop.X.side": "above", "plant.axis.X.brake_nm": 60}
+    with Bench("demo", stop, plc=[]) as bench:
         bench.run("N10 G90 G01 X380 F30000\nN777 X600 F30000\nN40 M30\n", limit_s=limit_s)
         assert errors(bench.run(NEXT)) == []
         assert bench.position_mm("X") == pytest.approx(400.28, abs=0.01)

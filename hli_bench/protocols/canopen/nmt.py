@@ -112,6 +112,9 @@ class ErrorControl:
         """The master's guarding stayed out for the life time."""
         if values.has(_PRODUCER):
             values.on_write(_PRODUCER, 0, self._write_producer)
+        for index in (_GUARD_TIME, _LIFE_FACTOR):
+            if values.has(index):
+                values.on_write(index, 0, self._write_guarding)
 
     def reset(self) -> None:
         """Start anew after a reset: toggle bit 0, heartbeat due at once."""
@@ -160,6 +163,16 @@ class ErrorControl:
         """Start a new period with a heartbeat at once."""
         self._period_ms = int(value)
         self._heartbeat_at = None
+        if self._period_ms:
+            # A node has one or the other: who asks for heartbeats does not guard it any more.
+            self._life_until = None
+            self.lost = False
+
+    def _write_guarding(self, value: Value) -> None:
+        """End life guarding when one of its factors becomes 0; else the next request counts with the new time."""
+        if not value:
+            self._life_until = None
+            self.lost = False
 
     def _number(self, index: int) -> int:
         return self._values.number(index) if self._values.has(index) else 0

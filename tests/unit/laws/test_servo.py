@@ -63,14 +63,17 @@ def test_friction_above_the_limit_holds_the_axis(rig: Any, axis: Any) -> None:
     assert _lag_mm(bench) == pytest.approx(0.5, abs=1e-3)
 
 
-def test_a_disabled_axis_stands_and_its_demand_follows(rig: Any, axis: Any) -> None:
-    bench = rig([axis()])
+def test_an_axis_without_power_coasts_to_a_stand_and_its_demand_follows(rig: Any, axis: Any) -> None:
+    bench = rig([axis(coulomb_nm=5.0, static_nm=6.0)])
     bench.move(100.0, 200)
     bench.rows.servo["enabled"] = 0
-    bench.wait(2)
     there = bench.mm()
+    bench.move(100.0, 100)
+    # 5 Nm on 3.3e-3 kg m2 are 2411 mm/s2
+    assert bench.mm() - there == pytest.approx(100.0**2 / 2 / 2411.0, rel=0.1)
+    rests = bench.mm()
     bench.move(100.0, 50)
-    assert bench.mm() == there
+    assert bench.mm() == rests
     assert bench.rows.servo[0]["demand"] == bench.rows.servo[0]["position"]
     assert bench.rows.servo[0]["torque_permille"] == 0
 

@@ -145,6 +145,23 @@ def test_life_guarding(master: Any, bus: Any, device: Any) -> None:
     assert emergencies(bus) == [(0x8130, 0x11), (0, 0)]
 
 
+@pytest.mark.parametrize(("index", "value", "code"), [(0x100C, 0, "H"), (0x100D, 0, "B"), (0x1017, 50, "H")])
+@pytest.mark.parametrize("wait", [0, 200], ids=["in time", "after it was lost"])
+def test_life_guarding_can_be_switched_off(
+    master: Any, bus: Any, index: int, value: int, code: str, wait: int
+) -> None:
+    """By either factor, or by a heartbeat in its place; an error that it has raised is over with it."""
+    download(master, 0x100C, 0, 10, "H")
+    download(master, 0x100D, 0, 3, "B")
+    bus.send_message(0x705, b"", remote=True)
+    bus.advance(wait)
+    raised = emergencies(bus)
+    assert raised == ([(0x8130, 0x11)] if wait else [])
+    download(master, index, 0, value, code)
+    bus.advance(500)
+    assert emergencies(bus) == ([*raised, (0, 0)] if wait else [])
+
+
 def test_heartbeat_consumer(master: Any, bus: Any, device: Any) -> None:
     download(master, 0x1016, 1, 0x20 << 16 | 50, "I")
     bus.advance(100)

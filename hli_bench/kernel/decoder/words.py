@@ -225,6 +225,10 @@ def _measuring_run(context: Context, words: Words, scanner: Scanner) -> Steps:
     _need_axes(words, scanner, "G100")
     if not context.feed and kind != FEED_FROM_AXIS:
         raise scanner.error("no feed (F) programmed for G100", words.at)
+    for axis, _ in words.axes:
+        if axis in where.including:
+            name = context.axes[axis].name
+            raise CncStop(errors.OFFSET_ALREADY_INCLUDED, scanner.block.source, name, axis=name)
     yield from _positions(context, words, scanner)
     moving = where.move(words.axes, absolute=context.absolute)
     programmed = [axis for axis, _ in words.axes]

@@ -12,17 +12,8 @@ from hli_bench.manual.axis.words import Edge, ProbingSignal
 from hli_bench.manual.drive_types import DriveType
 from hli_bench.manual.measuring_methods import chosen
 
-LATCHING = frozenset(
-    {
-        DriveType.SERCOS,
-        DriveType.PROFIDRIVE,
-        DriveType.LIGHTBUS,
-        DriveType.TERMINAL,
-        DriveType.RT_ETHERNET,
-        DriveType.CANOPEN,
-    }
-)
-"""Drive types that latch the position themselves: measuring there is the default (measurement manual 2)."""
+WITHOUT_HARDWARE = frozenset({DriveType.SIMULATION, DriveType.VIRTUAL})
+"""Drive types whose default source is PLC_FIRST_EVENT, not DRIVE (TF5200 axis parameters, P-AXIS-00516)."""
 
 TWO_INPUTS = frozenset({DriveType.SERCOS, DriveType.CANOPEN, DriveType.PROFIDRIVE})
 """Drive types with two probing inputs (P-AXIS-00517)."""
@@ -40,10 +31,7 @@ class TwoStepSlope:
 
 
 def effective_signal(kenngr: Kenngr) -> ProbingSignal:
-    """Return the source of the probing signal: P-AXIS-00516, else the old parameters, else by drive type.
-
-    Decided here: DRIVE_TYPE_DEFAULT is DRIVE for drives that latch, PLC for the others.
-    """
+    """Return the source of the probing signal: P-AXIS-00516, else the old parameters, else by drive type."""
     signal = kenngr.measure.signal
     if signal is ProbingSignal.UNSET:
         signal = chosen(kenngr)
@@ -58,10 +46,10 @@ def effective_edge(kenngr: Kenngr) -> Edge:
 
 
 def resolved_signal(signal: ProbingSignal, drive_type: DriveType) -> ProbingSignal:
-    """Return a source by name; DRIVE_TYPE_DEFAULT is DRIVE for drives that latch, PLC for the others."""
+    """Return a source by name, DRIVE_TYPE_DEFAULT as the one that the drive type has."""
     if signal is not ProbingSignal.DRIVE_TYPE_DEFAULT:
         return signal
-    return ProbingSignal.DRIVE if drive_type in LATCHING else ProbingSignal.PLC
+    return ProbingSignal.PLC_FIRST_EVENT if drive_type in WITHOUT_HARDWARE else ProbingSignal.DRIVE
 
 
 def effective_input(axis: AxisParams) -> int:

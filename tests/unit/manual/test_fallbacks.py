@@ -21,7 +21,9 @@ def axis(**values: object) -> AxisParams:
     ("values", "signal"),
     [
         ({"kenngr.antr_typ": 8}, "DRIVE"),
-        ({"kenngr.antr_typ": 4}, "PLC"),
+        ({"kenngr.antr_typ": 4}, "PLC_FIRST_EVENT"),
+        ({"kenngr.antr_typ": 16}, "PLC_FIRST_EVENT"),
+        ({"kenngr.antr_typ": 1}, "DRIVE"),
         ({"kenngr.antr_typ": 8, "kenngr.measure.signal": "DRIVE_TYPE_DEFAULT"}, "DRIVE"),
         ({"kenngr.antr_typ": 8, "kenngr.probing_signal_via_plc": 1}, "PLC"),
         ({"kenngr.antr_typ": 8, "kenngr.mess_signal_achs_steuer": 1}, "PLC"),

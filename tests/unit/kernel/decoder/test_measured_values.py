@@ -85,9 +85,14 @@ def test_offset_and_frame_together(decode: Any, state: Any, texts: Any) -> None:
     assert texts(decode(program, [state(measured=measured)])) == ["67.00 100.00 60.00 40.00"]
 
 
-def test_an_included_offset_counts_as_part_of_the_next_target(decode: Any, hit: Any, texts: Any) -> None:
-    program = run("Z20") + "G101 Z1\nG01 Z200\nG100 Z20\n" + SHOW + "M30"
-    assert texts(decode(program, [hit])) == ["100.00 100.00 20.00 0.00"]
+def test_a_run_of_an_axis_whose_offset_is_included_is_an_error(decode: Any, hit: Any, texts: Any) -> None:
+    """P-ERR-20050: the offset is to be taken out with G102 before the axis measures again."""
+    again = "G01 Z200\nG100 Z20\n" + SHOW + "M30"
+    error = decode(run("Z20") + "G101 Z1\n" + again, [hit])[-1]
+    assert isinstance(error, CncError)
+    assert (error.number, error.axis) == (20050, "Z")
+    assert texts(decode(run("Z20") + "G101 Z1\nG102 Z1\n" + again, [hit])) == ["100.00 100.00 100.00 80.00"]
+    assert decode(run("Z20") + "G101 Z1\nG100 X5\nM30", [hit])[-1].source.line == 5
 
 
 @pytest.mark.req("M-053", "M-067")

@@ -66,4 +66,6 @@ def rows(sheet: ErrorSheet) -> Iterator[tuple[str, str]]:
     yield "remedy", str(sheet.remedy_class)
     for place, meaning in enumerate(sheet.values):
         yield f"value {place + 1}", meaning
+    if sheet.details:
+        yield "the bench adds", ", ".join(sheet.details)
     yield "source", sheet.source

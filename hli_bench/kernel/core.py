@@ -12,6 +12,7 @@ from hli_bench.kernel.setup import AxisSetup, KernelSetup
 from hli_bench.kernel.watches import Watches, room
 from hli_bench.laws.rows import JOG, PATH, KernelRows, Rows
 from hli_bench.manual.errors import ErrorSheet, ReactionClass, Severity
+from hli_bench.manual.errors.record import BLOCK_NUMBER, DRIVE_STATUS, DRIVE_TYPE
 from hli_bench.protocols.hli.control_unit import ControlUnit, ControlUnits
 from hli_bench.protocols.hli.image import Image
 from hli_bench.wire.can import CanFrame
@@ -113,6 +114,14 @@ class Core:
         path = f"ax/{self.axis(index).number}/{name}"
         self.image.set(self.image.layout.element(path).id, value)
 
+    def _known(self, source: Source, axis: AxisIndex | None) -> dict[str, float | str]:
+        """Return the values that a message about this block and axis can be filled with."""
+        known: dict[str, float | str] = {BLOCK_NUMBER: source.name} if source.name else {}
+        if axis is not None:
+            known[DRIVE_TYPE] = int(self.axis(axis).params.kenngr.antr_typ)
+            known[DRIVE_STATUS] = int(self.row(axis)["statusword"])
+        return known
+
     def report(
         self,
         sheet: ErrorSheet,
@@ -121,17 +130,18 @@ class Core:
         axis: AxisIndex | None = None,
         cause: str = "",
     ) -> None:
-        """Emit an error or warning of the emulated CNC; `values` in the order of the sheet.
+        """Emit an error or warning of the CNC; `values` in the order of the sheet, without what is known here.
 
         `cause` is what the bench knows beyond the message of the CNC.
         """
+        named = sheet.named(values, self._known(source, axis))
         error = CncError(
             number=sheet.number,
             severity=sheet.severity,
-            text=sheet.message(values) + (f": {cause}" if cause else ""),
+            text=sheet.message_of(named) + (f": {cause}" if cause else ""),
             source=source,
             axis=self.axis(axis).name if axis is not None else "",
-            values=dict(zip(sheet.values, values, strict=False)),
+            values=named,
         )
         self.take(error, sheet.reaction_class, axis)
 

@@ -10,7 +10,7 @@ from hli_bench.kernel.blocks import Source
 from hli_bench.kernel.position_controller.homing import default
 from hli_bench.kernel.position_controller.probing import plc
 from hli_bench.laws.rows import JOG, W_FREE, W_NONE
-from hli_bench.manual.errors import ErrorSheet, ReactionClass, Severity
+from hli_bench.manual.errors import ErrorSheet, ReactionClass
 
 X, Y, Z, A = 0, 1, 2, 4
 LONG = "N10 G01 X100 Y50 F6000\nN20 M30\n"
@@ -185,7 +185,6 @@ def sheet(reaction: ReactionClass) -> ErrorSheet:
         number=70_999,
         name="test",
         text="test",
-        severity=Severity.ERROR,
         reaction_class=reaction,
         remedy_class=6,
     )

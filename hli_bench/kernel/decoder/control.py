@@ -4,7 +4,6 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from hli_bench.kernel.blocks import Source
 from hli_bench.kernel.decoder.context import Context, Steps
 from hli_bench.kernel.decoder.expressions import evaluate, is_true
 from hli_bench.kernel.decoder.faults import CncStop
@@ -49,10 +48,15 @@ class Control:
         self._lines = lines
         self._open: list[_Open] = []
 
-    @property
-    def open_block(self) -> Source | None:
-        """Return where the innermost open control block began."""
-        return self._open[-1].block.source if self._open else None
+    def check_closed(self) -> None:
+        """Raise CncStop when a control block is open at the end of the text."""
+        if self._open:
+            raise self._left_open(self._open[-1], len(self._open))
+
+    @staticmethod
+    def _left_open(opened: _Open, count: int) -> CncStop:
+        keywords = (f"${opened.word}", f"$END{opened.word}")
+        return CncStop(errors.CONTROL_STATEMENT_OPEN, opened.block.source, count, *keywords)
 
     def run(self, scanner: Scanner) -> Steps:
         """Decode the statement at the scanner."""
@@ -209,7 +213,7 @@ class Control:
                 depth -= 1
             elif branches and depth == 0 and word in ("ELSE", "ELSEIF"):
                 return word, scanner
-        raise CncStop(errors.CONTROL_STATEMENT_OPEN, opened.block.source)
+        raise self._left_open(opened, depth + 1)
 
 
 def _statement(scanner: Scanner) -> str:

@@ -10,12 +10,13 @@ from hli_bench.kernel.decoder.commands import COMMANDS
 from hli_bench.kernel.decoder.configuration import DecoderAxis, DecoderDefaults
 from hli_bench.kernel.decoder.context import Context, Item, Steps
 from hli_bench.kernel.decoder.control import Control
-from hli_bench.kernel.decoder.faults import CncStop
+from hli_bench.kernel.decoder.faults import CncStop, cnc_error
 from hli_bench.kernel.decoder.text import MAX_LINE, Lines, Scanner, read_block, short
 from hli_bench.kernel.decoder.variables import Variables, needs_flush
 from hli_bench.kernel.decoder.words import WordReader
 from hli_bench.manual.dialect import COMMANDS as DIALECT
 from hli_bench.manual.dialect import SIGNS, missing
+from hli_bench.manual.errors import Severity
 from hli_bench.manual.errors import decoder as errors
 
 _PLAIN_WORDS = re.compile(r"([A-Za-z])([+-]?(?:[0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]{1,20}))|([^ \t\r\n])")
@@ -73,11 +74,13 @@ class Decoder:
                 self._axis_of[axis.name.upper()] = self._axis_of[axis.name.lower()] = axis.index
 
     def blocks(self) -> Generator[Item, MachineState | None, None]:
-        """Yield blocks, queries (answer them with `send`) and at most one error, the last item."""
+        """Yield blocks, queries (answer them with `send`), warnings, and at most one error, the last item."""
         try:
             yield from self._items()
         except CncStop as stop:
             yield stop.error
+            if stop.error.severity == Severity.WARNING:
+                yield cnc_error(errors.PROGRAM_END_MISSING, Source("", self._lines.number))
 
     def run_ended(self, state: MachineState) -> None:
         """Take what a measuring run has left behind, before the next one begins."""
@@ -113,8 +116,7 @@ class Decoder:
             yield from self._block(raw)
             if context.ended:
                 return
-        if (source := self._control.open_block) is not None:
-            raise CncStop(errors.CONTROL_STATEMENT_OPEN, source)
+        self._control.check_closed()
         raise CncStop(errors.PROGRAM_END_MISSING, Source("", self._lines.number))
 
     def _plain(self, raw: str) -> Line | _Other | None:

@@ -7,13 +7,14 @@ from hli_bench.manual.errors.record import ErrorSheet
 
 def cnc_error(sheet: ErrorSheet, source: Source, *values: float | str, axis: str = "") -> CncError:
     """Return the record of a message with its values in the order of the sheet."""
+    named = sheet.named(values)
     return CncError(
         number=sheet.number,
         severity=str(sheet.severity),
-        text=sheet.message(values),
+        text=sheet.message_of(named),
         source=source,
         axis=axis,
-        values=dict(zip(sheet.values, values, strict=True)),
+        values=named,
     )
 
 

@@ -182,7 +182,8 @@ class Variables:
         if scanner.text[scanner.pos : scanner.pos + 1] == "[":
             index = AxisIndex(self._index(scanner))
             if index not in self._context.axes:
-                raise self._stop(scanner, errors.VARIABLE_INDEX, f"V.A.{name}[{index}]")
+                highest = max(self._context.axes)
+                raise self._stop(scanner, errors.VARIABLE_INDEX, index, 0, highest, f"V.A.{name}[{index}]")
         else:
             name, _, axis_name = name.rpartition(".")
             axis = self._context.by_name.get(axis_name)
@@ -246,5 +247,5 @@ class Variables:
             return scanner.not_emulated(f"V.{area}.{short(name)}: {what} not built", at)
         return self._stop(scanner, errors.UNKNOWN_VARIABLE, f"V.{area}.{name}")
 
-    def _stop(self, scanner: Scanner, sheet: ErrorSheet, variable: str) -> CncStop:
-        return CncStop(sheet, scanner.block.source, variable)
+    def _stop(self, scanner: Scanner, sheet: ErrorSheet, *values: float | str) -> CncStop:
+        return CncStop(sheet, scanner.block.source, *values)

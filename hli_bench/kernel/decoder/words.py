@@ -276,11 +276,11 @@ def _include(context: Context, words: Words, scanner: Scanner) -> Steps:
     source, measured = scanner.block.source, context.measurements
     yield from context.flush(source)
     for axis, factor in words.axes:
-        name = context.axes[axis].name
+        name, number = context.axes[axis].name, context.axes[axis].number
         if not measured.has_value(axis):
             raise CncStop(errors.OFFSET_NOT_REQUESTED, source, name, axis=name)
         if axis in context.coordinates.including:
-            raise CncStop(errors.OFFSET_ALREADY_INCLUDED, source, name, axis=name)
+            raise CncStop(errors.OFFSET_ALREADY_INCLUDED, source, number, name, axis=name)
         context.coordinates.include(axis, rounded(factor * measured.distance(axis)))
 
 
@@ -290,8 +290,8 @@ def _exclude(context: Context, words: Words, scanner: Scanner) -> Steps:
     where = context.coordinates
     for axis in [axis for axis, _ in words.axes] or sorted(where.including):
         if axis not in where.including:
-            name = context.axes[axis].name
-            raise CncStop(errors.OFFSET_NOT_INCLUDED, scanner.block.source, name, axis=name)
+            name, number = context.axes[axis].name, context.axes[axis].number
+            raise CncStop(errors.OFFSET_NOT_INCLUDED, scanner.block.source, number, name, axis=name)
         where.exclude(axis)
 
 

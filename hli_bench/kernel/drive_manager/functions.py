@@ -6,7 +6,6 @@ Source: measurement manual 7.2.2; P-AXIS-00724..00728 for scaling and limits.
 import struct
 from typing import Final
 
-from hli_bench.base.errors import NotEmulated
 from hli_bench.kernel.blocks import DriveWrite
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.drive_manager.objects import Done, ObjectChannel, Order
@@ -33,14 +32,13 @@ def write(core: Core, channel: ObjectChannel, block: DriveWrite, done: Done) -> 
     if function.commu is Communication.IGNORE:
         done(None)
         return True
-    if function.commu is Communication.CYCLIC or function.data_type not in _PACKING:
-        raise NotEmulated(f"antr.function of axis {axis.name}: {function.commu}, {function.data_type}")
     packing, low, high = _PACKING[function.data_type]
     raw = scaled(function, block.value)
-    if raw > high:
-        core.report(errors.LIMIT_ABOVE_TYPE, block.source, axis.number, raw, high, axis=block.axis)
-    elif raw < low:
-        core.report(errors.LIMIT_BELOW_TYPE, block.source, axis.number, raw, low, axis=block.axis)
+    if not low <= raw <= high:
+        sheet, bound = (errors.LIMIT_ABOVE_TYPE, high) if raw > high else (errors.LIMIT_BELOW_TYPE, low)
+        factor = factor_of(function)
+        values = (axis.number, function.id, raw / factor, factor, bound / factor)
+        core.report(sheet, block.source, *values, axis=block.axis)
     index, subindex = ident(function)
     data = struct.pack(packing, min(max(raw, low), high))
     channel.write(axis.node, Order(index, subindex, data, done))
@@ -51,8 +49,12 @@ def scaled(function: Function, value: float) -> int:
     """Return the raw value: limited without a message (NO_LIMIT: not), times the factor with LINEAR scaling."""
     low = function.min_limit if function.min_limit < NO_LIMIT else value
     limited = min(max(value, low), function.max_limit)
-    factor = function.scaling_factor if function.scaling_type is ScalingType.LINEAR else 1.0
-    return round(limited * factor)
+    return round(limited * factor_of(function))
+
+
+def factor_of(function: Function) -> float:
+    """Return what a value is multiplied with on its way to the drive."""
+    return function.scaling_factor if function.scaling_type is ScalingType.LINEAR else 1.0
 
 
 def ident(function: Function) -> tuple[int, int]:

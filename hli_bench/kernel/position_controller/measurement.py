@@ -159,8 +159,10 @@ def _spare_probe(run: Run) -> None:
     strokes = [core.axis(axis).params.kenngr.hub_messtaster for axis in run.block.axes]
     before, after = core.preparation.limit_feed(run.segment, float(min(strokes)))
     if after < before:
-        feeds = [round(mm_per_min(one), 3) for one in (before, after)]
-        core.report(preparation_errors.MEASURING_FEED_CORRECTED, run.block.source, *feeds)
+        wanted, corrected = (round(mm_per_min(one), 3) for one in (before, after))
+        shortest = core.axis(run.block.axes[strokes.index(min(strokes))]).number
+        sheet = preparation_errors.MEASURING_FEED_CORRECTED
+        core.report(sheet, run.block.source, corrected, shortest, wanted)
 
 
 def _latch(axis: AxisIndex, run: Run) -> None:
@@ -177,7 +179,7 @@ def _latch(axis: AxisIndex, run: Run) -> None:
         position, dc_ns = latched
         if dc_ns < run.begun:
             sheet = errors.PROBE_EVENT_TOO_EARLY
-            core.report(sheet, run.block.source, core.axis(one).number, axis=one)
+            core.report(sheet, run.block.source, axis=one)
             run.pending.clear()
             return
         _keep(run, one, probe, position, dc_ns)
@@ -278,7 +280,7 @@ def _all_or_none(run: Run) -> None:
 def _not_ready(run: Run) -> None:
     core = run.core
     axis = next(axis for axis, condition in run.pending.items() if condition is not None)
-    core.report(errors.PROBING_NOT_INITIALISED, run.block.source, run.block.source.number, axis=axis)
+    core.report(errors.PROBING_NOT_INITIALISED, run.block.source, axis=axis)
     run.pending.clear()
 
 

@@ -62,6 +62,7 @@ class Function:
             data_type=DataType.STRING,
             choices=tuple(ObjectDataType),
             drive_types=(DriveType.SERCOS, DriveType.PROFIDRIVE, DriveType.CANOPEN),
+            not_emulated=(ObjectDataType.BITARRAY_16, ObjectDataType.BITARRAY_32),
             doc="Data type of the object.",
             source="TF5200 drive command, infosys page 225973131; default as P-AXIS-00722",
             effect=Effect.EMULATED,

@@ -112,7 +112,8 @@ class LrHw:
         Sheet(
             number="P-AXIS-00531",
             data_type=DataType.SGN32,
-            low=0,
+            low=1,
+            unset=0,
             units=LENGTH,
             doc="Longest path off the reference cam; 0 off.",
             source="TF5200 axis parameters 1.172",

@@ -14,12 +14,12 @@ PLATFORM_ORDER: Final[ErrorSheet] = motion_error(
     "platform_order", 40_086, "the platform cannot take an order"
 )
 AXIS_ORDER: Final[ErrorSheet] = motion_error(
-    "axis_order", 40_087, "axis unit {0} cannot take an order", "logical axis number"
+    "axis_order", 40_087, "axis unit {0} cannot take an order", details=("logical axis number",)
 )
 CHANNEL_ORDER: Final[ErrorSheet] = motion_error(
     "channel_order", 40_088, "the channel unit cannot take an order"
 )
 PLC_STOPPED: Final[ErrorSheet] = motion_error(
-    "plc_stopped", 40_011, "PLC {0} does not serve the HLI any more", "name of the PLC task"
+    "plc_stopped", 40_011, "PLC {0} does not serve the HLI any more", details=("name of the PLC task",)
 )
 """The catalogue's message for a PLC side that is not there; used for a PLC that died or froze (decided here)."""

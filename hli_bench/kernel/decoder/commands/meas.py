@@ -14,6 +14,7 @@ from hli_bench.kernel.decoder.keywords import Keyword, Kind, axis_of, keywords
 from hli_bench.kernel.decoder.text import Scanner
 from hli_bench.kernel.decoder.variables import Variables
 from hli_bench.manual.axis.kenngr import Measure
+from hli_bench.manual.drive_types import DriveType
 from hli_bench.manual.errors import decoder as errors
 from hli_bench.manual.errors import path_interpolator as path_errors
 from hli_bench.manual.sheet import entries
@@ -91,7 +92,7 @@ def _mode(context: Context, memory: Variables, scanner: Scanner) -> None:
 
 def _set_type(context: Context, scanner: Scanner, value: float) -> None:
     if value != int(value) or not 1 <= value <= MAX_TYPE:
-        raise CncStop(errors.MEASURING_TYPE_RANGE, scanner.block.source, value)
+        raise CncStop(errors.MEASURING_TYPE_RANGE, scanner.block.source, value, 1, MAX_TYPE)
     if value == MAX_TYPE:
         raise scanner.not_emulated("measurement type 8: edge banding over several blocks")
     context.measuring_type = int(value)
@@ -196,7 +197,9 @@ def _input(scanner: Scanner, keyword: Keyword | None, axis: DecoderAxis) -> int 
             path_errors.MEAS_INPUT_INVALID,
             scanner.block.source,
             axis.number,
+            int(DriveType.CANOPEN),  # the only drive type that is built
             int(keyword.value),
+            LARGEST_INPUT,
             axis=axis.name,
         )
     return int(keyword.value)

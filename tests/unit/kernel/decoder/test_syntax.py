@@ -109,8 +109,8 @@ def test_independent_axes_are_named_as_not_built(decode: Any) -> None:
     ("program", "number"),
     [
         ("G00 X1", 21129),
-        ("$IF 1\nG00 X1", 20375),
-        ("$IF 0\nG00 X1", 20375),
+        ("$IF 1\nG00 X1", 21129),
+        ("$IF 0\nG00 X1", 21129),
         ("%one\nG00 X1\n%two\nM30", 20193),
         ("G100 G100 X1 F1", 20123),
         ("#MEAS MODE[5]\nG100 X1 F1", 20138),
@@ -132,6 +132,23 @@ def test_errors_by_number_end_the_program(decode: Any, program: str, number: int
     assert isinstance(error, CncError)
     assert (error.number, error.severity) == (number, "error")
     assert "?" not in error.text
+
+
+@pytest.mark.parametrize(
+    ("program", "values"),
+    [
+        ("N010 $IF 1\nG00 X1", (1, "$IF", "$ENDIF")),
+        ("$IF 1\nN010 $WHILE 1 < 2\nG00 X1", (2, "$WHILE", "$ENDWHILE")),
+        ("N010 $IF 0\nG00 X1", (1, "$IF", "$ENDIF")),
+    ],
+)
+def test_an_open_control_statement_is_a_warning(
+    decode: Any, program: str, values: tuple[object, ...]
+) -> None:
+    warning, error = [item for item in decode(program) if isinstance(item, CncError)]
+    assert (warning.number, warning.severity, warning.source.number) == (20375, "warning", "N010")
+    assert tuple(warning.values.values()) == values
+    assert (error.number, error.severity) == (21129, "error")
 
 
 def test_a_warning_does_not_end_the_program(decode: Any) -> None:
@@ -180,7 +197,8 @@ def test_an_axis_name_with_a_digit_needs_equals(decode: Any) -> None:
     assert decode("G00 X2\nM30", axes=axes)[0].target == {0: 2.0}
     with pytest.raises(NotEmulated, match="spindles"):
         decode("S100", axes=axes)
-    assert decode("G74 X1 S3\nM30", axes=axes)[0].ranks == {0: 1, 2: 3}
+    with pytest.raises(NotEmulated, match="homing of spindle S"):
+        decode("G74 X1 S3\nM30", axes=axes)
 
 
 @pytest.mark.req("M-106")

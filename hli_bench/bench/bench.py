@@ -26,6 +26,7 @@ from hli_bench.plc import Task, period_of
 from hli_bench.protocols.hli.access import Refusal
 from hli_bench.runtime.engine import Engine, Observer
 from hli_bench.shells.apart import apart
+from hli_bench.shells.between import BetweenCalls
 from hli_bench.shells.pacing import RealPace, Stopwatch
 from hli_bench.shells.plc_times import PlcBook
 from hli_bench.shells.processes import Deadline, PlcProcess, free_endpoint
@@ -33,6 +34,7 @@ from hli_bench.shells.realtime import Garbage, ask, frozen_garbage
 
 if TYPE_CHECKING:
     from hli_bench.bench.door import HliDoor
+    from hli_bench.bench.remote import RemoteMachine
 
 STAND_CYCLES: Final = 60_000
 """Cycles at most in which what was aborted comes to rest (decided here)."""
@@ -43,6 +45,8 @@ WITHOUT_MOTION_PACED: Final = 50
 FOREVER: Final = 1 << 62
 IDLE_S: Final = 0.2
 """Longest wait for a client while time stands still."""
+SETTLE_CYCLES: Final = 5000
+"""Within which all is answered: more than a reset may take."""
 MOST_TOLD: Final = 100
 """PLCs of whose overruns people are told: clients may attach under ever new names."""
 LONGEST_RUN_S: Final = 86_400.0
@@ -106,6 +110,8 @@ class Bench:
             self._closing = stack
             self._realtime = realtime
             self.kernel = build.kernel(self.config)
+            self._remote: RemoteMachine | None = None
+            self._ended_told: set[str] = set()
             self.engine = self._engine(machine, settings or {}, can, processes=processes)
             self.engine.observers += observers
             self._tap = _Tap(on_record)
@@ -125,6 +131,9 @@ class Bench:
             self.interrupted: Result | None = None
             """What a program had done when it was interrupted."""
             # Built: from here on `close` ends what the stack holds.
+            self._for_clients = zenoh is not None
+            self._between = BetweenCalls(self._attend)
+            stack.callback(self._between.close)
             self._closing = stack.pop_all()
 
     def __enter__(self) -> Self:
@@ -142,6 +151,10 @@ class Bench:
 
     def start_up(self) -> None:
         """Switch on: bring all drives into operation, then start the PLC tasks. `run` does it when needed."""
+        with self._between.busy():
+            self._start_up()
+
+    def _start_up(self) -> None:
         if self._closed:
             raise BenchError("this bench is closed; make a new one")
         if self._up:
@@ -159,6 +172,8 @@ class Bench:
         if self._pace is not None:
             self._keep_calm()
             self._pace.restart()
+        if self._for_clients:
+            self._between.start()
 
     def run(
         self, program: str | Path | Iterable[str], name: str = "", *, limit_s: float | None = None
@@ -172,7 +187,7 @@ class Bench:
         """
         if limit_s is not None and not 0.0 < limit_s < math.inf:
             raise InputError(f"limit_s {limit_s!r}: expected seconds above 0")
-        with opened(program, name) as (lines, known_as):
+        with self._between.busy(), opened(program, name) as (lines, known_as):
             return self._run(lines, known_as, limit_s)
 
     def _run(self, lines: Iterable[str], name: str, limit_s: float | None) -> Result:
@@ -215,6 +230,7 @@ class Bench:
         if stopped is not None:
             self.interrupted = result
             raise stopped
+        self._settle()
         if self._pace is not None:
             self._garbage.between_programs()
         return result
@@ -278,16 +294,40 @@ class Bench:
 
     def advance(self, cycles: int) -> None:
         """Let `cycles` cycles pass without a program."""
-        self.start_up()
-        if self._pace is not None:
-            self._pace.resume()
-        self._advance(lambda: False, self.engine.cycle + cycles)
-        self._raise_failure()
+        with self._between.busy():
+            self.start_up()
+            if self._pace is not None:
+                self._pace.resume()
+            self._advance(lambda: False, self.engine.cycle + cycles)
+            self._raise_failure()
 
     def reset(self) -> None:
         """CNC reset: errors are cleared, drives that dropped out come back."""
-        self.kernel.reset()
-        self.engine.wake()
+        with self._between.busy():
+            self.kernel.reset()
+            self.engine.wake()
+
+    def _settle(self) -> None:
+        """Let the cycles pass in which what clients asked for takes effect, so that they are answered."""
+        door = self._door
+        if door is not None and door.waiting:
+            self._advance(lambda: not door.waiting, self.engine.cycle + SETTLE_CYCLES)
+
+    def _attend(self) -> None:
+        """Serve clients between the calls of this class, as `serve` does in free pace."""
+        door = self._door
+        if door is None or not self._up:
+            return
+        try:
+            door.wait(0.0)
+            door.refuse_programs()
+            if self._pace is not None and door.waiting:
+                self._pace.resume()
+            self._settle()
+        except Exception as error:
+            # Who runs the bench meets it with the next call; a thread of its own has nobody to raise it to.
+            self._on_note(f"clients are served no more: {type(error).__name__}: {error}")
+            raise SystemExit from error
 
     def position_mm(self, axis: str) -> float:
         """Return the actual position of an axis in machine coordinates, mm or degrees."""
@@ -299,12 +339,16 @@ class Bench:
         In free pace time stands still while no program runs; a client's write lets the cycles pass that it
         needs to take effect.
         """
-        from hli_bench.bench.door import result_reply
-
         door = self._door
         if door is None:
             raise InputError("a bench that stays up needs an endpoint (--zenoh)")
-        self.start_up()
+        with self._between.busy():
+            self.start_up()
+            self._serve(door)
+
+    def _serve(self, door: "HliDoor") -> None:
+        from hli_bench.bench.door import result_reply
+
         while True:
             while door.programs:
                 request = door.programs.pop(0)
@@ -316,12 +360,21 @@ class Bench:
                     self._on_note(f"the bench failed between programs: {type(failure).__name__}: {failure}")
             else:
                 door.wait(IDLE_S)
+                self._tell_ended()
+
+    def _tell_ended(self) -> None:
+        """Tell once of processes that have ended while time stands still; the next cycle ends the bench with that."""
+        for name, condition in self._remote.processes.items() if self._remote is not None else ():
+            if condition.startswith("ended") and name not in self._ended_told:
+                self._ended_told.add(name)
+                self._on_note(f"the process of the {name} has {condition}: no cycle can pass any more")
 
     def state(self) -> dict[str, Any]:
         """Return one look at the bench: CNC mode, axes, drives, terminals, PLCs, late cycles."""
         lateness = self._pace.lateness if self._pace else None
         net = self._door.counts if self._door is not None else {}
-        return state.look(self.config, self.engine, self.terminal_layouts, lateness, net)
+        processes = self._remote.processes if self._remote is not None else {}
+        return state.look(self.config, self.engine, self.terminal_layouts, lateness, net, processes)
 
     def _advance(self, until: Callable[[], bool], limit: int) -> bool:
         while not until():
@@ -352,7 +405,7 @@ class Bench:
         from hli_bench.bench.remote import RemoteEngine, RemoteMachine
 
         rows = self.kernel.rows.axis
-        remote = self._closing.enter_context(
+        remote = self._remote = self._closing.enter_context(
             RemoteMachine(self.config, machine, settings, can, rows, realtime=self._realtime)
         )
         self.terminal_layouts = build.terminal_layouts(self.config)
@@ -392,6 +445,8 @@ class Bench:
             plc_times=self._plc_times,
             on_overrun=self._overran_plc,
         )
+        if self._remote is not None:
+            self._remote.on_silence = self._tap.door.show_only
         return self._tap.door
 
     def _foreign_syncs(self, count: int) -> Iterator[str]:

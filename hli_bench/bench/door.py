@@ -101,6 +101,18 @@ class HliDoor:
         if self._server.stirs or engine.lost:
             self._attend()
 
+    def show_only(self) -> None:
+        """Answer who looks, while a process of the bench does not answer and no cycle can pass."""
+        for request in self._server.states():
+            self._serve(request)
+
+    def refuse_programs(self) -> None:
+        """Refuse what clients want to run on a bench that a script runs."""
+        while self.programs:
+            self.programs.pop(0).refuse(
+                "this bench is run by a program of its own and takes none from clients"
+            )
+
     def wait(self, timeout_s: float) -> None:
         """Wait for something to do while time stands still, and do it."""
         requests = self._server.wait_request(timeout_s)

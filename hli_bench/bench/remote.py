@@ -2,7 +2,7 @@
 
 import json
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Final, Self
@@ -102,6 +102,10 @@ class RemoteMachine:
             stack.callback(self._terminals.close)
             # All there: from here on `__exit__` ends what the stack holds.
             self._closing = stack.pop_all()
+        self.on_silence: Callable[[], None] = lambda: None
+        """Called while a process does not answer."""
+        for worker in (self._drives, self._terminals):
+            worker.on_silence = self._silence
         self._signals = signal_names([axis.name for axis in config.axes])
         self._edges: list[Edge] = []
         self._images: dict[str, bytes] = {}
@@ -127,6 +131,14 @@ class RemoteMachine:
 
     def __exit__(self, *_: object) -> None:
         self._closing.close()
+
+    def _silence(self) -> None:
+        self.on_silence()
+
+    @property
+    def processes(self) -> dict[str, str]:
+        """What a look at the processes shows: running, stopped, silent for some time, or ended."""
+        return {"drives": self._drives.condition, "terminals": self._terminals.condition}
 
     def power_on(self) -> list[CanFrame]:
         """Boot all nodes."""

@@ -62,17 +62,24 @@ class Pipe:
             raise Gone from error
 
     def limit(self, seconds: float) -> None:
-        """Wait at most so long from now on, 0: not at all; after a TimeoutError the pipe is of no use any more."""
+        """Wait at most so long from now on, 0: not at all.
+
+        What cannot be sent in time ends the use of the pipe; who waited too long for a message may wait for it again.
+        """
         self._end.setblocking(seconds > 0.0)
         limit = _TIMEVAL.pack(int(seconds), int(seconds % 1.0 * 1e6))
         for direction in (socket.SO_RCVTIMEO, socket.SO_SNDTIMEO):
             self._end.setsockopt(socket.SOL_SOCKET, direction, limit)
 
     def receive(self) -> bytes:
-        """Wait for one message. Raises EOFError when the other side has gone, TimeoutError when it is stuck."""
+        """Wait for one message. Raises EOFError when the other side has gone, TimeoutError when it is stuck.
+
+        What came of a message before a TimeoutError is kept: it may be called again.
+        """
         data = self._rest or self._some()
+        self._rest = data
         while len(data) < _LENGTH.size:
-            data += self._some()
+            data = self._rest = data + self._some()
         end = _LENGTH.size + _LENGTH.unpack_from(data)[0]
         if len(data) < end:
             data = self._up_to(end, data)
@@ -82,10 +89,13 @@ class Pipe:
     def _up_to(self, end: int, data: bytes) -> bytes:
         """Return `data` and what comes, at least `end` bytes."""
         parts, size = [data], len(data)
-        while size < end:
-            parts.append(self._some(min(end - size, _MOST)))
-            size += len(parts[-1])
-        return b"".join(parts)
+        try:
+            while size < end:
+                parts.append(self._some(min(end - size, _MOST)))
+                size += len(parts[-1])
+        finally:
+            data = self._rest = b"".join(parts)
+        return data
 
     def _some(self, size: int = _FIRST) -> bytes:
         try:

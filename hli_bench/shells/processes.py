@@ -19,6 +19,8 @@ END_S: Final = 5.0
 """Time that a process gets to end by itself."""
 ANSWER_S: Final = 30.0
 """Time in which a worker must answer; a cycle takes a millisecond (decided here)."""
+SLICE_S: Final = 0.25
+"""A worker that has not answered for so long is spoken of, and again whenever so long has passed."""
 START_S: Final = 180.0
 """The same for its first answer: it loads the machine and may compile the laws before (decided here)."""
 
@@ -108,6 +110,19 @@ class Worker:
         self._name = module
         self._answer_s = answer_s
         self._started = False
+        self._silent_s = 0.0
+        self.on_silence: Callable[[], None] = lambda: None
+        """Called again and again while an answer is waited for that does not come."""
+
+    @property
+    def condition(self) -> str:
+        """What a look at the process shows: running, stopped, silent for some time, or ended."""
+        status = self._process.poll()
+        if status is not None:
+            return f"ended with status {status}"
+        if _stopped(self._process.pid):
+            return "stopped"
+        return f"silent for {self._silent_s:g} s" if self._silent_s else "running"
 
     def ask(self, message: bytes) -> bytes:
         """Send a message and wait for the answer. Raises BenchError when the process has ended or is stuck.
@@ -128,12 +143,32 @@ class Worker:
         """Wait for the answer to what was told. Raises as `ask` does."""
         try:
             message = self.pipe.receive()
-        except (EOFError, TimeoutError) as error:
+        except TimeoutError as error:
+            message = self._late_answer(error)
+        except EOFError as error:
             raise self._failure(error) from error
         if not self._started:
             self._started = True
-            self.pipe.limit(self._answer_s)
+            self.pipe.limit(min(self._answer_s, SLICE_S))
         return message
+
+    def _late_answer(self, error: TimeoutError) -> bytes:
+        """Wait on, with the bench being told of it; also `tell` waits as long as an answer may take."""
+        slices = round(self._answer_s / SLICE_S) if self._started else 0
+        self.pipe.limit(SLICE_S)
+        try:
+            for number in range(1, slices):
+                self._silent_s = number * SLICE_S
+                self.on_silence()
+                try:
+                    return self.pipe.receive()
+                except TimeoutError:
+                    continue
+                except EOFError as gone:
+                    raise self._failure(gone) from gone
+            raise self._failure(error) from error
+        finally:
+            self._silent_s = 0.0
 
     def _failure(self, error: Exception) -> BenchError:
         """Return what has become of the process."""
@@ -152,6 +187,15 @@ class Worker:
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(END_S)
         _end(self._process)
+
+
+def _stopped(pid: int) -> bool:
+    """Tell whether a process is stopped by a signal or a debugger; False where the system does not say so."""
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_text()
+    except OSError:
+        return False
+    return stat.rpartition(") ")[2][:1] in ("T", "t")
 
 
 def work(main: Callable[[Pipe, Sequence[str]], None], arguments: Sequence[str]) -> int:

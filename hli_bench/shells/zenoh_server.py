@@ -165,6 +165,14 @@ class HliServer:
             self._tell_dropped()
         return [self._requests.popleft() for _ in range(min(most, len(self._requests)))]
 
+    def states(self) -> list[State]:
+        """Return requests for the state only, and answer reading queries: the bench is held and can do no more."""
+        self._inbox.handle(Budget(self._budget_ns))
+        self._questions.answer()
+        found = [request for request in self._requests if isinstance(request, State)]
+        self._requests = deque(request for request in self._requests if not isinstance(request, State))
+        return found
+
     def wait_request(self, timeout_s: float) -> list[Request]:
         """Wait until something is asked or a PLC departs, at most `timeout_s`; return what was asked."""
         deadline = monotonic() + timeout_s

@@ -287,6 +287,22 @@ def test_no_stop_by_its_source_is_an_error(make, errors):
     assert result.notes == ("N50: axis Z measured nothing: no fixed stop was found on its way",)
 
 
+@pytest.mark.parametrize(
+    ("words", "no_error", "numbers"),
+    [
+        ("[TYPE=7 ERR_NO_SIGNAL=0]", 0, []),
+        ("[TYPE=7 ERR_NO_SIGNAL=1]", 1, [50886]),
+        ("[TYPE=7]", 1, []),
+        ("[TYPE=7]", 0, [50886]),
+    ],
+)
+def test_the_word_of_the_program_goes_before_the_channel(make, words, no_error, numbers):
+    bench = make({"axis.Z.start_mm": 90.0, "channel.meas_fixed_stop_no_error": no_error})
+    result = bench.run(f"N40 #MEAS {words}\nN50 G90 G100 Z110 F600\nN60 M30\n")
+    assert [one.id for one in result.errors] == numbers
+    assert [(one.axis, one.block) for one in result.unmeasured] == [("Z", "N50")]
+
+
 def test_a_stop_beside_another_source_is_an_impermissible_setting(make, errors):
     result = make(AT_STOP | BY_SIGNAL).run("N50 G90 G100 X10 Z110 F600\nN60 M30\n")
     assert errors(result) == [(50529, "X", "N50")]
@@ -312,6 +328,12 @@ def test_drive_value_above_its_type_is_warned_of_and_limited(make, recorder):
 
 
 @pytest.mark.req("M-165")
+@pytest.mark.parametrize("value", ["1e308", "-1e308"])
+def test_drive_value_beyond_all_numbers_is_limited(make, value):
+    bench = make({"axis.Z.antr.function[0].max_limit": "1e308"})
+    assert bench.run(f"N10 #DRIVE WR SYN [AX=Z KEY=TORQUE_LIMIT VAL={value} WAIT]\nN20 M30\n").completed
+
+
 def test_value_that_the_drive_refuses_is_an_error(make, errors, recorder):
     bench = make({"axis.Z.antr.function[0].wr_ident[0]": "5FFF_00"}, recorder=recorder)
     result = bench.run("%p\nN10 #DRIVE WR SYN [AX=Z KEY=MON_WINDOW VAL=1 WAIT]\nN20 M30\n")

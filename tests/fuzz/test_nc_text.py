@@ -319,3 +319,19 @@ def test_what_cannot_be_decoded_is_told_with_its_place() -> None:
         with pytest.raises(InputError) as caught:
             drain(text)
         assert (caught.value.line, caught.value.column) == (line, column)
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        ("G04 1e300", 20015),
+        ("G00 X1e300", 20011),
+        ("G92 X1e308\nG91 G92 X1e308\nG90 G00 X0", 20011),
+        ("#CS ON [1e308,1e308,1e308,45,45,45]\nG00 X1 Y1 Z1", 20011),
+        ("G90 G100 X300000 F1", 20011),
+    ],
+)
+def test_numbers_beyond_the_format_are_errors_of_the_cnc(text: str, number: int) -> None:
+    blocks = Decoder(text.splitlines(), "fuzz.nc", AXES, DecoderDefaults()).blocks()
+    (error,) = (item for item in blocks if isinstance(item, CncError))
+    assert error.number == number

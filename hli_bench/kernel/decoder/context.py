@@ -5,6 +5,7 @@ from typing import Final
 
 from hli_bench.base.errors import InputError
 from hli_bench.base.ids import AxisIndex
+from hli_bench.base.units import TENTH_UM_PER_MM
 from hli_bench.kernel.blocks import Block, Flush, Idle, MachineState, Source
 from hli_bench.kernel.decoder.configuration import DecoderAxis, DecoderDefaults
 from hli_bench.kernel.decoder.coordinates import Coordinates
@@ -13,8 +14,9 @@ from hli_bench.kernel.decoder.measurements import Measurements
 from hli_bench.kernel.records import CncError
 from hli_bench.manual.errors import decoder as errors
 
-LARGEST_POSITION: Final = (2**31 - 1) * 1e-4
-"""mm or degrees: SGN32 in 0.1 um. Source: TF5200 programming manual, ranges of values."""
+LARGEST: Final = 2**31 - 1
+"""Positions are SGN32 in 0.1 um or 0.0001 degrees. Source: TF5200 programming manual, ranges of values."""
+LARGEST_POSITION: Final = LARGEST / TENTH_UM_PER_MM
 Item = Block | Flush | CncError | Idle
 Steps = Generator[Item, MachineState | None, None]
 """What every command yields; a `Flush` is answered with a `MachineState`."""
@@ -67,9 +69,13 @@ class Context:
 
     def check_format(self, target: Mapping[AxisIndex, float], source: Source) -> None:
         """Raise CncStop for a position that the position format does not hold."""
-        for position in target.values():
+        for axis, position in target.items():
             if not -LARGEST_POSITION <= position <= LARGEST_POSITION:
-                raise CncStop(errors.COORDINATE_FORMAT, source, position)
+                name, number = self.axes[axis].name, self.axes[axis].number
+                found = position * TENTH_UM_PER_MM
+                raise CncStop(
+                    errors.COORDINATE_FORMAT, source, number, -LARGEST, LARGEST, found, found, axis=name
+                )
 
     def moved(self) -> None:
         """Note that what the machine said last no longer holds."""

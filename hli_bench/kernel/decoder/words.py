@@ -31,6 +31,8 @@ _M_WORD = re.compile(r"M([0-9]+)", re.IGNORECASE)
 _LETTERS = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
 _ADDRESS = re.compile(r"[A-Z][0-9]*|LL|LV")
 _AXIS_COMMAND = re.compile(rf"\s*\[\s*(MC_\w+|[MGH][0-9]+|{'|'.join(AXIS_COMMANDS)})\b", re.IGNORECASE)
+LONGEST_DWELL: Final = (2**32 - 1) // 1000
+"""Seconds of G04 at most (decided here: ms in UNS32)."""
 _BUILT: Final = tuple(f"G{name[1:]:0>2}" for name, what in G_FUNCTIONS.items() if what == BUILT)
 
 TAKING_AXES: Final = frozenset((74, 92, 100, 101, 102))
@@ -129,6 +131,10 @@ class WordReader:
         seconds = evaluate(scanner, self._memory)
         if seconds < 0:
             raise scanner.error(f"G04: expected seconds from 0 on, found {seconds:g}", start)
+        if seconds > LONGEST_DWELL:
+            raise CncStop(
+                errors.DWELL_TIME_FORMAT, scanner.block.source, seconds * 1e6, 0, LONGEST_DWELL * 1_000_000
+            )
         return seconds
 
     def _axis_word(self, scanner: Scanner, found: re.Match[str], *, homing: bool) -> tuple[AxisIndex, float]:
@@ -227,8 +233,8 @@ def _measuring_run(context: Context, words: Words, scanner: Scanner) -> Steps:
         raise scanner.error("no feed (F) programmed for G100", words.at)
     for axis, _ in words.axes:
         if axis in where.including:
-            name = context.axes[axis].name
-            raise CncStop(errors.OFFSET_ALREADY_INCLUDED, scanner.block.source, name, axis=name)
+            name, number = context.axes[axis].name, context.axes[axis].number
+            raise CncStop(errors.OFFSET_ALREADY_INCLUDED, scanner.block.source, number, name, axis=name)
     yield from _positions(context, words, scanner)
     moving = where.move(words.axes, absolute=context.absolute)
     programmed = [axis for axis, _ in words.axes]

@@ -14,6 +14,8 @@ from hli_bench.manual.axis.fixed_stop import NO_LIMIT
 from hli_bench.manual.axis.words import Communication, ObjectDataType, ScalingType
 from hli_bench.manual.errors import position_controller as errors
 
+BEYOND: Final = 2.0**63
+"""What is beyond every data type: a larger number says no more."""
 _PACKING: Final = {
     ObjectDataType.SGN16: ("<h", -(1 << 15), (1 << 15) - 1),
     ObjectDataType.SGN32: ("<i", -(1 << 31), (1 << 31) - 1),
@@ -49,7 +51,8 @@ def scaled(function: Function, value: float) -> int:
     """Return the raw value: limited without a message (NO_LIMIT: not), times the factor with LINEAR scaling."""
     low = function.min_limit if function.min_limit < NO_LIMIT else value
     limited = min(max(value, low), function.max_limit)
-    return round(limited * factor_of(function))
+    product = limited * factor_of(function)
+    return round(min(max(product, -BEYOND), BEYOND))
 
 
 def factor_of(function: Function) -> float:

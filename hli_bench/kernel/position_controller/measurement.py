@@ -241,21 +241,21 @@ def _missed(run: Run) -> None:
     run.missed += run.pending
     for axis in run.pending:
         number = core.axis(axis).number
-        if run.fixed_stop:
-            if core.setup.channel.meas_fixed_stop_no_error:
-                continue
-            core.report(errors.FIXED_STOP_NOT_FOUND, run.block.source, number, axis=axis)
-        elif _signal_demanded(run):
-            core.report(errors.NO_MEASUREMENT, run.block.source, number, axis=axis)
-        else:
+        if not _event_demanded(run):
             continue
+        if run.fixed_stop:
+            core.report(errors.FIXED_STOP_NOT_FOUND, run.block.source, number, axis=axis)
+        else:
+            core.report(errors.NO_MEASUREMENT, run.block.source, number, axis=axis)
         run.reported.add(axis)
 
 
-def _signal_demanded(run: Run) -> bool:
-    """Tell whether a run without signal is an error: as the program says, else by channel and type."""
+def _event_demanded(run: Run) -> bool:
+    """Tell whether a run without event is an error: as the program says, else by channel and type."""
     if run.error_no_signal is not None:
         return run.error_no_signal
+    if run.fixed_stop:
+        return not run.core.setup.channel.meas_fixed_stop_no_error
     return run.core.setup.channel.meas_error_no_signal or run.block.measuring_type == FEED_FROM_AXIS
 
 

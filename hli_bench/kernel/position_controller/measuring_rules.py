@@ -70,8 +70,22 @@ def take_settings(core: Core, probes: dict[AxisIndex, Probe], settings: MeasureS
     if refusal is None:
         probes[axis.index] = after
         return
-    values = (axis.number, after.input) if refusal is errors.MEAS_INPUT_INVALID else (axis.number,)
-    core.report(refusal, settings.source, *values, axis=axis.index)
+    core.report(refusal, settings.source, *_values(refusal, axis, before, after), axis=axis.index)
+
+
+def _values(refusal: ErrorSheet, axis: AxisSetup, before: Probe, after: Probe) -> tuple[int | str, ...]:
+    """Return what is handed over with a refused change, in the order of the sheet."""
+    drive_type = int(axis.params.kenngr.antr_typ)
+    if refusal is errors.MEAS_INPUT_INVALID:
+        return axis.number, drive_type, after.input, _largest_input(axis, after)
+    if refusal is errors.MEAS_NOT_A_MEASUREMENT_AXIS:
+        return (axis.number,)
+    return axis.number, drive_type, after.signal.value, after.input, before.input
+
+
+def _largest_input(axis: AxisSetup, probe: Probe) -> int:
+    inputs = permitted_inputs(probe.signal, axis.params.kenngr.antr_typ)
+    return 0 if inputs is None else inputs.stop - 1
 
 
 def _change_refused(axis: AxisSetup, before: Probe, after: Probe) -> ErrorSheet | None:
@@ -151,7 +165,8 @@ def _wrong_source(
     axis, probe = core.axis(index), effective_probe(block, probes, index)
     inputs = permitted_inputs(probe.signal, axis.params.kenngr.antr_typ)
     if index in block.axes and inputs is not None and probe.input not in inputs:
-        core.report(errors.MEAS_INPUT_INVALID, block.source, axis.number, probe.input, axis=index)
+        values = _values(errors.MEAS_INPUT_INVALID, axis, probe, probe)
+        core.report(errors.MEAS_INPUT_INVALID, block.source, *values, axis=index)
         return True
     if index in block.axes and to_fixed_stop(block, probes) and probe.signal is not ProbingSignal.FIXED_STOP:
         core.report(

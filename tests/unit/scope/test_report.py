@@ -129,5 +129,11 @@ def test_an_error_of_the_cnc_stands_in_a_table() -> None:
     assert "No axis moved." in page
 
 
+def test_a_run_that_measured_nothing_stands_in_red() -> None:
+    page = report(probing("PLC"), "N10 G100 G90 Z299.5 F100\nN20 M30")
+    assert "Not measured" in page
+    assert '<td class="w error">measured nothing: no probing signal came on its way</td>' in page
+
+
 def test_two_runs_give_the_same_page(page: str, tmp_path: Path) -> None:
     assert report(probing("PLC_TIMESTAMP"), PROGRAM) == page

@@ -48,6 +48,7 @@ SIGNALS: Final = tuple(str(word) for word in _SIGNAL.choices if word)
 """Values of P-AXIS-00516 that SIGNAL= takes."""
 
 MAX_TYPE: Final = 8
+FIXED_STOP_TYPE: Final = 7
 LARGEST_INPUT: Final = 255
 
 
@@ -127,6 +128,8 @@ def _settings(context: Context, memory: Variables, scanner: Scanner) -> Steps:
             raise CncStop(errors.MEAS_KEYWORD_TWICE, scanner.block.source)
         else:
             groups[-1].seen[keyword.name] = keyword
+    if not any(group.seen or group.axes for group in groups):
+        raise scanner.error(f"expected one of {', '.join(_KEYS)} in #MEAS [...]")
     general = list(_general(context, scanner, groups))
     for group in groups[1:]:
         if not group.seen:
@@ -134,8 +137,6 @@ def _settings(context: Context, memory: Variables, scanner: Scanner) -> Steps:
     if not groups[0].axes and groups[0].seen:
         first = next(iter(groups[0].seen.values()))
         raise scanner.error(f"expected AX= or AXNR= before {first.name}", first.at)
-    if len(groups) == 1 and not general:
-        raise scanner.error(f"expected one of {', '.join(_KEYS)} in #MEAS [...]")
     yield from general
     for group in groups[1:]:
         for axis in group.axes:
@@ -145,13 +146,14 @@ def _settings(context: Context, memory: Variables, scanner: Scanner) -> Steps:
 def _general(context: Context, scanner: Scanner, groups: list[_Group]) -> Iterator[MeasureSettings]:
     """Take TYPE and ERR_NO_SIGNAL, which belong to no axis.
 
-    TYPE without ERR_NO_SIGNAL asks for the error (the keyword's default, decided here).
+    TYPE without ERR_NO_SIGNAL asks for the error (the keyword's default, decided here); of type 7
+    P-CHAN-00266 decides then.
     """
     wanted: bool | None = None
     for group in groups:
         if (keyword := group.seen.pop("TYPE", None)) is not None:
             _set_type(context, scanner, keyword.value)
-            wanted = True if wanted is None else wanted
+            wanted = True if wanted is None and keyword.value != FIXED_STOP_TYPE else wanted
         if (keyword := group.seen.pop("ERR_NO_SIGNAL", None)) is not None:
             wanted = bool(_whole(scanner, keyword, 0, 1))
     if wanted is not None:

@@ -103,7 +103,7 @@ class DriveObject:
         late = refused.code == AbortCode.TIME_OUT
         sheet = errors.DRIVE_COMMAND_TIMEOUT if late else errors.DRIVE_COMMAND_NOT_SUPPORTED
         axis = self._core.axis(self._block.axis)
-        self._core.report(sheet, self._block.source, axis.number, axis=axis.index)
+        self._core.report(sheet, self._block.source, axis.number, axis=axis.index, cause=str(refused))
 
 
 class Dwelling:

@@ -186,6 +186,62 @@ class Numbers:
         raise AssertionError(refusals)
 
 
+def test_drive_objects_are_written_while_somebody_reads_over_the_same_server(
+    bench: Bench, hear: list[Any]
+) -> None:
+    """A tool reads the status word with every cycle; its answers are not those to #DRIVE."""
+    text = "N10 #DRIVE WR SYN [AX=Z KEY=TORQUE_LIMIT VAL=50 WAIT]\n" * 5 + "N20 M30"
+    bench.kernel.start(text.splitlines(), "p")
+    bench.engine.wake()
+    read = CanFrame(0x600 + NODE, struct.pack("<BHB4x", 0x40, 0x6041, 0))
+    for _ in range(60):
+        bench.engine.put([read, read])
+        bench.advance(1)
+    assert hear == []
+    assert bench.kernel.channel.completed
+
+
+def test_a_tool_has_a_server_of_its_own(bench: Bench) -> None:
+    """0x1201 gets its identifiers over the first server, then answers on them; both at once."""
+    frames: list[CanFrame] = []
+
+    class Bus(Numbers):
+        def cycles(self, first: int, count: int) -> None:
+            pass
+
+        def frames(self, cycle: int, passed: Any) -> None:
+            frames.extend(passed)
+
+        def edges(self, edges: Any) -> None:
+            pass
+
+        def commands(self, commands: Any) -> None:
+            pass
+
+    bench.engine.observers.append(Bus([]))
+    bench.engine.put([write(0x1201, 1, struct.pack("<I", 0x683)), write(0x1201, 2, struct.pack("<I", 0x693))])
+    bench.advance(2)
+    read = struct.pack("<BHB4x", 0x40, 0x6041, 0)
+    bench.engine.put([CanFrame(0x683, read)])
+    bench.advance(2)
+    (answer,) = [frame for frame in frames if frame.cob_id == 0x693]
+    assert struct.unpack_from("<H", answer.data, 4)[0] & 0x6F == 0x27
+    refused = [
+        write(0x1201, 1, struct.pack("<I", 0x684)),
+        write(0x1201, 2, struct.pack("<I", 0x80000000 + 0x183)),
+    ]
+    bench.engine.put(refused[:1])
+    bench.advance(2)
+    (aborted,) = [frame for frame in frames if frame.cob_id == 0x583 and frame.data[0] == 0x80]
+    assert aborted.data[1:4] == bytes((0x01, 0x12, 1)), "a valid identifier is taken back first"
+    bench.engine.put(refused[1:])
+    bench.advance(2)
+    frames.clear()
+    bench.engine.put([CanFrame(0x683, read)])
+    bench.advance(2)
+    assert [frame for frame in frames if frame.cob_id == 0x693] == []
+
+
 def test_a_foreign_sync_is_counted_and_changes_nothing(bench: Bench, hear: list[Any]) -> None:
     first = bench.run(MOVE)
     assert first.notes == () or all("SYNC" not in note for note in first.notes)

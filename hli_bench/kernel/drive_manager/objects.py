@@ -3,24 +3,32 @@
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from typing import Final
 
 from hli_bench.base.ids import NodeId
 from hli_bench.base.time import Ns
-from hli_bench.protocols.canopen.aborts import SdoAbort
+from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.sdo import SdoClient
 from hli_bench.wire.can import CanFrame
 
+ATTEMPTS: Final = 3
+"""Times that a transfer is begun that others on the bus break off (decided here)."""
+BROKEN_OFF: Final = frozenset(
+    {AbortCode.TIME_OUT, AbortCode.TOGGLE, AbortCode.BAD_COMMAND, AbortCode.LENGTH, AbortCode.SEQUENCE}
+)
+"""How a transfer ends whose server has begun another one for somebody else; all else is a refusal of the drive."""
 Done = Callable[[SdoAbort | None], None]
 
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """One download; `done` gets None, or why the drive refused it."""
+    """One download; `done` gets None, or why the drive refused it. `attempts` counts those that were made."""
 
     index: int
     subindex: int
     data: bytes
     done: Done
+    attempts: int = 1
 
 
 class ObjectChannel:
@@ -93,7 +101,12 @@ class ObjectChannel:
         try:
             client.result()
         except SdoAbort as abort:
-            order.done(abort)
+            if not client.collided or abort.code not in BROKEN_OFF:
+                order.done(abort)
+            elif order.attempts < ATTEMPTS:
+                self._orders[node].appendleft(replace(order, attempts=order.attempts + 1))
+            else:
+                order.done(SdoAbort(abort.code, collided=True))
         else:
             order.done(None)
 

@@ -40,8 +40,13 @@ class AbortCode(IntEnum):
 
 
 class SdoAbort(Exception):  # noqa: N818 - the field's word; it is the outcome of a transfer, not a failure of ours
-    """A transfer was refused or broken off; `code` is an AbortCode or another stack's number."""
+    """A transfer was refused or broken off; `code` is an AbortCode or another stack's number.
 
-    def __init__(self, code: int) -> None:
-        super().__init__(f"SDO abort 0x{code:08X}")
+    `collided`: somebody else used the same server meanwhile.
+    """
+
+    def __init__(self, code: int, *, collided: bool = False) -> None:
+        also = ", another SDO client used the same server at the same time" if collided else ""
+        super().__init__(f"SDO abort 0x{code:08X}{also}")
         self.code = code
+        self.collided = collided

@@ -28,13 +28,15 @@ from hli_bench.protocols.canopen.nmt import (
 )
 from hli_bench.protocols.canopen.pdo import PdoSet
 from hli_bench.protocols.canopen.sdo import REQUEST_COB_ID
-from hli_bench.protocols.canopen.sdo_server import SdoServer
+from hli_bench.protocols.canopen.sdo_servers import FREE, SdoServers
 from hli_bench.protocols.canopen.sync import SyncConsumer
 from hli_bench.wire.can import CanFrame
 
 _TALKING: Final = (NmtState.PRE_OPERATIONAL, NmtState.OPERATIONAL)
 """States in which a node answers SDOs and sends EMCY."""
-CONFIGURING: Final = frozenset({NMT_COB_ID, MASTER_COB_ID, *range(REQUEST_COB_ID, REQUEST_COB_ID + 0x80)})
+CONFIGURING: Final = frozenset(
+    {NMT_COB_ID, MASTER_COB_ID, *range(REQUEST_COB_ID, REQUEST_COB_ID + 0x80), *FREE}
+)
 """Identifiers whose frames may change what a node hears."""
 _IDENTITY: Final = 0x1018
 _SERIAL: Final = 4
@@ -93,7 +95,7 @@ class Device:
         self._consumer = HeartbeatConsumer(self.values)
         self._sync = SyncConsumer(self.values)
         self._pdos = PdoSet(self.values)
-        self._sdo = SdoServer(self.values, node_id)
+        self._sdo = SdoServers(self.values, node_id)
         self._lss = LssSlave(node_id, self._identity())
         self._application: Application | None = None
         self._heard: frozenset[int] = frozenset()
@@ -134,7 +136,7 @@ class Device:
             return self._on_nmt(frame)
         if cob_id == MASTER_COB_ID:
             return self._lss.on_frame(frame, self.node_id)
-        if cob_id == REQUEST_COB_ID + self.node_id:
+        if cob_id in self._sdo.requests:
             return self._sdo.on_frame(frame, now) if self.nmt.state in _TALKING else []
         if cob_id > ERROR_CONTROL_COB_ID:
             self._consumer.on_frame(frame, now)
@@ -163,10 +165,16 @@ class Device:
 
     def hears(self) -> frozenset[int]:
         """Return the identifiers that `on_frame` may act on; a configuration by SDO, NMT or LSS changes them."""
-        state = self._pdos.changes, self.node_id, self._sync.cob_id, self._consumer.nodes
+        state = (
+            self._pdos.changes,
+            self.node_id,
+            self._sync.cob_id,
+            self._consumer.nodes,
+            self._sdo.requests,
+        )
         if state != self._heard_in:
             self._heard_in = state
-            own = {NMT_COB_ID, MASTER_COB_ID, REQUEST_COB_ID + self.node_id, self._sync.cob_id}
+            own = {NMT_COB_ID, MASTER_COB_ID, self._sync.cob_id} | self._sdo.requests
             states = {ERROR_CONTROL_COB_ID + node for node in (self.node_id, *self._consumer.nodes)}
             pdos = {pdo.cob_id for pdo in (*self._pdos.rpdos, *self._pdos.tpdos) if pdo.valid}
             self._heard = frozenset(own | states | pdos)
@@ -203,7 +211,7 @@ class Device:
         self._tell_nmt()
         if node_id != self.node_id:
             self.values.move(node_id)
-            self.nmt.node_id = self._sdo.node_id = node_id
+            self.nmt.node_id = node_id
             indices = ALL_OBJECTS
         self._lss.pending_node_id = node_id
         self._lss.configuring = False
@@ -214,7 +222,7 @@ class Device:
         self._error_control.reset()
         self._consumer.reload()
         self._sync.reload()
-        self._sdo.reset()
+        self._sdo.reload(node_id)
         self._pdos.reload()
         if indices is ALL_OBJECTS and self._application is not None:
             self._application.on_reset()

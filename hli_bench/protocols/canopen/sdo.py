@@ -72,6 +72,12 @@ class _Waiting(Enum):
     UPLOAD_SEGMENT = auto()
 
 
+_DOWNLOADS: Final = 0x60
+_UPLOADS: Final = 0x40
+_INITIATED: Final = {_Waiting.DOWNLOAD_STARTED: _DOWNLOADS, _Waiting.UPLOAD_STARTED: _UPLOADS}
+"""Command of the answer that names the object and that a client waits for."""
+
+
 @dataclass(slots=True)
 class _Transfer:
     """What a client knows of its transfer."""
@@ -84,13 +90,13 @@ class _Transfer:
 
 
 class SdoClient:
-    """One transfer at a time to the default SDO server of a node.
+    """One transfer at a time to the default SDO server of a node, which others on the bus may use as well.
 
     `begin_write`/`begin_read` give the first frame, `on_frame` the following ones; when no longer `busy`,
     `result()` has the bytes read (b"" after a write) or raises SdoAbort.
     """
 
-    __slots__ = ("_deadline", "_error", "_transfer", "_waiting", "node_id", "timeout")
+    __slots__ = ("_deadline", "_error", "_transfer", "_waiting", "collided", "node_id", "timeout")
 
     def __init__(self, node_id: int, timeout: Ns = CLIENT_TIMEOUT) -> None:
         self.node_id = node_id
@@ -99,6 +105,8 @@ class SdoClient:
         self._transfer: _Transfer | None = None
         self._error: SdoAbort | None = None
         self._deadline = Ns(0)
+        self.collided = False
+        """Answers to somebody else came from the server during the last transfer: it may have lost that one for it."""
 
     @property
     def busy(self) -> bool:
@@ -124,10 +132,16 @@ class SdoClient:
         return self._frame(header(0x40, index, subindex))
 
     def on_frame(self, frame: CanFrame, now: Ns) -> list[CanFrame]:
-        """Take a frame of the bus; frames that are not this client's answers change nothing."""
+        """Take a frame of the bus; frames that are not this client's answers change nothing.
+
+        What tells them apart is the object: an answer names it, or is a segment.
+        """
         transfer = self._transfer
         ours = frame.cob_id == RESPONSE_COB_ID + self.node_id and len(frame.data) == FRAME_LENGTH
         if not ours or frame.remote or not self.busy or transfer is None:
+            return []
+        if self._is_others(transfer, frame.data):
+            self.collided = True
             return []
         if frame.data[0] == ABORT:
             self._finish(SdoAbort(struct.unpack_from("<I", frame.data, 4)[0]))
@@ -157,7 +171,18 @@ class SdoClient:
         self._waiting = waiting
         self._transfer = transfer
         self._error = None
+        self.collided = False
         self._deadline = Ns(now + self.timeout)
+
+    def _is_others(self, transfer: _Transfer, data: bytes) -> bool:
+        """Tell whether an answer of the server is one to another client."""
+        command = data[0] & 0xE0
+        if command not in (_DOWNLOADS, _UPLOADS, ABORT):
+            return self._waiting in (_Waiting.DOWNLOAD_STARTED, _Waiting.UPLOAD_STARTED)
+        if multiplexer(data) != transfer.address:
+            return True
+        expected = _INITIATED.get(self._waiting)
+        return command != ABORT and command != expected
 
     def _frame(self, data: bytes) -> list[CanFrame]:
         return [CanFrame(REQUEST_COB_ID + self.node_id, data)]

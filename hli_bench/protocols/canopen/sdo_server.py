@@ -13,8 +13,6 @@ from hli_bench.protocols.canopen.sdo import (
     ABORT,
     EXPEDITED_BYTES,
     FRAME_LENGTH,
-    REQUEST_COB_ID,
-    RESPONSE_COB_ID,
     SEGMENT_BYTES,
     SERVER_TIMEOUT,
     TOGGLE_BIT,
@@ -73,13 +71,14 @@ _Transfer = _SegmentedDownload | _SegmentedUpload | _BlockDownload | _BlockUploa
 
 
 class SdoServer:
-    """The default SDO server of node `node_id`; one transfer at a time, a new request replaces an old one."""
+    """An SDO server on its two identifiers; one transfer at a time, a new request replaces an old one."""
 
-    __slots__ = ("_address", "_deadline", "_transfer", "_values", "node_id")
+    __slots__ = ("_address", "_deadline", "_transfer", "_values", "request", "response")
 
-    def __init__(self, values: ObjectValues, node_id: int) -> None:
+    def __init__(self, values: ObjectValues, request: int, response: int) -> None:
         self._values = values
-        self.node_id = node_id
+        self.request = request
+        self.response = response
         self._transfer: _Transfer | None = None
         self._address = (0, 0)
         self._deadline = Ns(0)
@@ -91,7 +90,7 @@ class SdoServer:
     def on_frame(self, frame: CanFrame, now: Ns) -> list[CanFrame]:
         """Answer a request; frames of another COB-ID or of other than 8 bytes are not requests."""
         data = frame.data
-        if frame.cob_id != REQUEST_COB_ID + self.node_id or frame.remote or len(data) != FRAME_LENGTH:
+        if frame.cob_id != self.request or frame.remote or len(data) != FRAME_LENGTH:
             return []
         if data[0] == ABORT:
             self._transfer = None
@@ -101,7 +100,7 @@ class SdoServer:
             replies = self._answer(data)
         except SdoAbort as abort:
             return self._abort(abort.code)
-        return [CanFrame(RESPONSE_COB_ID + self.node_id, reply) for reply in replies]
+        return [CanFrame(self.response, reply) for reply in replies]
 
     def tick(self, now: Ns) -> list[CanFrame]:
         """Abort a transfer whose client fell silent."""
@@ -115,7 +114,7 @@ class SdoServer:
 
     def _abort(self, code: int) -> list[CanFrame]:
         self._transfer = None
-        return [abort_frame(RESPONSE_COB_ID + self.node_id, self._address, code)]
+        return [abort_frame(self.response, self._address, code)]
 
     def _answer(self, data: bytes) -> list[bytes]:
         """Dispatch by state and command specifier."""

@@ -1,13 +1,17 @@
 """#DRIVE values on their way to the drive object: scaling, limits, ident; acyclic orders one at a time."""
 
+import struct
+from typing import Any
+
 import pytest
 
 from hli_bench.base.ids import NodeId
 from hli_bench.base.time import Ns
 from hli_bench.kernel.drive_manager.functions import ident, scaled
-from hli_bench.kernel.drive_manager.objects import ObjectChannel, Order
+from hli_bench.kernel.drive_manager.objects import ATTEMPTS, ObjectChannel, Order
 from hli_bench.manual.axis.antr import Function
 from hli_bench.manual.axis.words import ScalingType
+from hli_bench.protocols.canopen.aborts import AbortCode
 from hli_bench.wire.can import CanFrame
 
 LINEAR = ScalingType("LINEAR")
@@ -64,6 +68,34 @@ def test_orders_to_a_node_go_one_after_the_other():
     assert done[1][0] == 0x6065
     assert done[1][1] is not None
     assert not channel.busy
+
+
+def test_a_transfer_that_others_break_off_is_begun_again_and_the_third_time_said():
+    channel = ObjectChannel([NODE])
+    done: list[Any] = []
+    channel.write(NODE, Order(0x6072, 0, b"\1\0", done.append))
+    for attempt in range(ATTEMPTS):
+        now = Ns(attempt * 1_000_000_000)
+        asked = channel.begin(now)
+        assert [frame.data[1:3] for frame in asked if frame.data[0] != 0x80] == [b"\x72\x60"]
+        channel.on_frame(answer(0x6041, 0x4B), now)
+    assert done == []
+    channel.begin(Ns(ATTEMPTS * 1_000_000_000))
+    (refused,) = done
+    assert refused.collided
+    assert "another SDO client used the same server" in str(refused)
+    assert not channel.busy
+
+
+def test_a_refusal_beside_others_is_a_refusal():
+    channel = ObjectChannel([NODE])
+    done: list[Any] = []
+    channel.write(NODE, Order(0x6072, 0, b"\1\0", done.append))
+    channel.begin(Ns(0))
+    channel.on_frame(answer(0x6041, 0x4B), Ns(0))
+    channel.on_frame(CanFrame(0x580 + NODE, struct.pack("<BHBI", 0x80, 0x6072, 0, AbortCode.RANGE)), Ns(0))
+    (refused,) = done
+    assert (refused.code, refused.collided) == (AbortCode.RANGE, False)
 
 
 def test_nodes_have_a_channel_each_and_other_frames_are_left_alone():

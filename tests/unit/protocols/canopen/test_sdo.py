@@ -86,8 +86,6 @@ def assert_aborted(client: Any, frames: Any, code: int) -> None:
     ("answers", "code"),
     [
         ([(0x61, 0, 0x20)], AbortCode.BAD_COMMAND),
-        ([(0x60, 1, 0x20)], AbortCode.BAD_COMMAND),
-        ([(0x60, 0, 0x20), (0x40,)], AbortCode.BAD_COMMAND),
         ([(0x60, 0, 0x20), (0x30,)], AbortCode.TOGGLE),
         ([(0x60, 0, 0x20), (0x20,), (0x20,)], AbortCode.TOGGLE),
     ],
@@ -102,8 +100,6 @@ def test_wrong_answers_to_a_download(client: Any, answers: Any, code: int) -> No
 @pytest.mark.parametrize(
     ("answers", "code"),
     [
-        ([(0x60, 0, 0x20)], AbortCode.BAD_COMMAND),
-        ([(0x41, 0, 0x21, 0, 9)], AbortCode.BAD_COMMAND),
         ([(0x41, 0, 0x20, 0, 9), (0x20,)], AbortCode.BAD_COMMAND),
         ([(0x41, 0, 0x20, 0, 9), (0x10,)], AbortCode.TOGGLE),
         ([(0x41, 0, 0x20, 0, 9), (0x01,)], AbortCode.LENGTH),
@@ -114,6 +110,33 @@ def test_wrong_answers_to_an_upload(client: Any, answers: Any, code: int) -> Non
     for answer in answers[:-1]:
         assert reply(client, *answer)
     assert_aborted(client, reply(client, *answers[-1]), code)
+
+
+@pytest.mark.parametrize(
+    "others",
+    [
+        (0x60, 1, 0x20),
+        (0x4B, 0x41, 0x60),
+        (0x4B, 0, 0x20),
+        (0x80, 0x41, 0x60, 0, 0, 0, 9, 6),
+        (0x20,),
+        (0x05,),
+    ],
+)
+def test_answers_to_somebody_else_change_nothing(client: Any, others: Any) -> None:
+    """Another client of the same server: the object tells its answers from ours, or that they are segments."""
+    client.begin_write(BLOB, 0, b"ab", Ns(0))
+    assert reply(client, *others) == []
+    assert client.busy
+    assert client.collided
+    assert reply(client, 0x60, 0, 0x20) == []
+    assert client.result() == b""
+    client.begin_write(BLOB, 0, bytes(20), Ns(0))
+    assert not client.collided
+    assert len(reply(client, 0x60, 0, 0x20)) == 1
+    if others[0] >= 0x40:
+        assert reply(client, *others) == []
+        assert len(reply(client, 0x20)) == 1
 
 
 def test_upload_of_unknown_size(client: Any) -> None:

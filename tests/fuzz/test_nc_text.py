@@ -1,10 +1,8 @@
 """NC text of any kind: blocks, an error of the CNC, `InputError` or `NotEmulated`, and never long.
 
-`HLI_BENCH_FUZZ=N` runs N texts of each kind instead of the few of the usual tests; a text that fails is
-printed with its seed.
+A text that fails is printed with its seed; how many are tried, and from which seed on, says `inputs.py`.
 """
 
-import os
 import random
 import re
 import time
@@ -18,8 +16,8 @@ from hli_bench.kernel.blocks import Flush, MachineState
 from hli_bench.kernel.decoder import Decoder, DecoderAxis, DecoderDefaults
 from hli_bench.kernel.records import CncError
 from hli_bench.manual import dialect
+from tests.fuzz.inputs import COUNT, FIRST
 
-COUNT = int(os.environ.get("HLI_BENCH_FUZZ", "400"))
 ITEMS = 3000
 """Items of a program at most: a loop may be endless."""
 PROCESSOR_S = 20.0
@@ -240,7 +238,7 @@ def noise(draw: random.Random) -> str:
 
 @pytest.mark.parametrize("make", [soup, damaged, noise])
 def test_any_text(make: Callable[[random.Random], str]) -> None:
-    for seed in range(COUNT):
+    for seed in range(FIRST, FIRST + COUNT):
         check(make(random.Random(f"{make.__name__} {seed}")), seed)
 
 

@@ -167,11 +167,12 @@ FUNCTIONS: Final[Mapping[str, str]] = {
     **dict.fromkeys(("INT", "FRACT", "CEIL", "FLOOR", "MIN", "MAX", "SIGN"), "this function"),
     **dict.fromkeys(("EXIST", "SIZEOF", "IS_STRING", "IS_NUMBER"), "questions about variables"),
     **dict.fromkeys(("MACRO_LENGTH", "MACRO_CONTENT"), "macros"),
+    **dict.fromkeys(("PROBE0", "PROBE1"), "probing inputs by name"),
     **dict.fromkeys(("ENCRYPT", "LEFT", "RIGHT", "MID", "LEN", "FIND", "DELETE", "INSERT"), _STRINGS),
     **dict.fromkeys(("REPLACE", "ORD", "FSTRING", "INT_TO_STR", "REAL_TO_STR"), _STRINGS),
     **dict.fromkeys(("STR_TO_INT", "STR_TO_REAL"), _STRINGS),
 }
-"""Functions in expressions."""
+"""Words in expressions: functions, and names that stand for numbers."""
 
 OPERATORS: Final[Mapping[str, str]] = {
     **dict.fromkeys(("**", "*", "/", "MOD", "+", "-", "<=", ">=", "==", "<", ">", "!=", "="), BUILT),

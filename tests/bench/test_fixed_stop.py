@@ -277,6 +277,15 @@ def test_a_stop_by_its_source_is_relieved_whatever_the_type(make, kind):
     )
 
 
+@pytest.mark.req("E-020")
+def test_several_axes_share_the_words_behind_them(make):
+    bench = make(AT_STOP)
+    settings = f"N40 #MEAS [AX=X AX=Z SIGNAL=FIXED_STOP]\nG00 Z100\n{LIMITED}"
+    result = bench.run(f"{settings}N50 G100 Z110 F600\nN60 G100 X5 F600\nN70 M30\n")
+    assert [(one.axis, one.source) for one in result.measurements] == [("Z", "FIXED_STOP")]
+    assert [(one.id, one.axis, one.block) for one in result.errors] == [(50886, "X", "N60")]
+
+
 def test_no_stop_by_its_source_is_an_error(make, errors):
     free = {"axis.Z.start_mm": 90.0} | BY_SIGNAL
     result = make(free).run("N50 G90 G100 Z110 F600\nN60 M30\n")

@@ -33,7 +33,7 @@ N60 M30
 """
 
 
-@pytest.mark.req("M-129", "M-130")
+@pytest.mark.req("M-129", "M-130", "E-019", "E-026")
 @pytest.mark.parametrize("processes", [False, True])
 @pytest.mark.parametrize(("first", "blocks"), [("", ["N20", "N50"]), ("probe", ["N20", "N40", "N50"])])
 def test_the_program_changes_the_input_of_a_canopen_drive(
@@ -90,6 +90,7 @@ def test_a_default_of_the_drive_type_may_be_named() -> None:
     assert value.source == "DRIVE"
 
 
+@pytest.mark.req("E-006", "E-007")
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("word", [0, 1])
 def test_the_word_of_the_program_decides_whether_a_missing_signal_is_an_error(kind: int, word: int) -> None:

@@ -7,14 +7,17 @@ from hli_bench.kernel.decoder.keywords import Kind, axis_of, keywords
 from hli_bench.kernel.decoder.text import Scanner
 from hli_bench.kernel.decoder.variables import Variables
 
+_SET = re.compile(r"SET\b", re.IGNORECASE)
 _INIT = re.compile(r"INIT\b", re.IGNORECASE)
 _KEYS: dict[str, Kind] = {"CMDPOS": "flag", "ACTPOS": "flag", "AX": "word", "AXNR": "value"}
 
 
 def run(context: Context, memory: Variables, scanner: Scanner) -> Steps:
     """Flush and take command or actual positions; with named axes the others take command positions."""
+    if other := scanner.match(_SET):
+        raise scanner.not_emulated("#CHANNEL SET: settings of functions not built", other.start())
     if not scanner.match(_INIT):
-        raise scanner.not_emulated(f"#CHANNEL {scanner.found()}: only #CHANNEL INIT is built")
+        raise scanner.error(f"expected INIT after #CHANNEL, found {scanner.found()}")
     actual = False
     named = set()
     if scanner.peek() == "[":

@@ -14,7 +14,15 @@ if TYPE_CHECKING:
 
 _WORD = re.compile(r"[A-Z]+", re.IGNORECASE)
 _SYN = re.compile(r"SYN\b", re.IGNORECASE)
-_KEYS: dict[str, Kind] = {"AX": "word", "AXNR": "value", "KEY": "word", "VAL": "value", "WAIT": "flag"}
+_KEYS: dict[str, Kind] = {
+    "AX": "word",
+    "AXNR": "value",
+    "KEY": "word",
+    "VAL": "value",
+    "WAIT": "flag",
+    "MOTOR": "value",
+    "PARAM_SET": "value",
+}
 
 
 def run(context: Context, memory: Variables, scanner: Scanner) -> Steps:
@@ -37,6 +45,10 @@ def run(context: Context, memory: Variables, scanner: Scanner) -> Steps:
                 key = keyword.word.upper()
             case "VAL":
                 value = keyword.value
+            case "MOTOR" | "PARAM_SET":
+                raise scanner.not_emulated(
+                    f"#DRIVE {keyword.name}: several motors of a drive not built", keyword.at
+                )
             case _:
                 wait = True
     if axis is None or not key or value is None:

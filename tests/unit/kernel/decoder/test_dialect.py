@@ -56,6 +56,9 @@ SAID = [
     ("/N10 X1", 1, "skipping"),
     ("/2 N10 X1", 1, "skipping"),
     ("%L PART", 1, "subroutines"),
+    ("N10 #CHANNEL SET [A=1]", 14, "#CHANNEL SET"),
+    ("N10 #DRIVE WR [AX=X MOTOR=2 KEY=A VAL=1]", 21, "#DRIVE MOTOR"),
+    ("N10 #MEAS [AX=X INPUT=PROBE0]", 23, "PROBE0: probing inputs by name"),
     ("N10 V.G.WZ[3].R = 5", 5, "V.G.WZ: tools"),
     ("N10 P1 = V.A.-SWE.X", 10, "software limits"),
     ("N10 P1 = V.G.@P[2].VALID", 10, "subroutines"),
@@ -86,7 +89,17 @@ def test_words_marked_as_built_are_those_that_the_decoder_knows(decode: Any) -> 
 
 @pytest.mark.parametrize(
     "program",
-    ["N10 G64", "N10 G1000", "N10 G7", "N10 #NOTHING", "N10 $NEVER", "N10 P1 = FOO[1]", "N10 WORD", "N10 ?"],
+    [
+        "N10 G64",
+        "N10 G1000",
+        "N10 G7",
+        "N10 #NOTHING",
+        "N10 #CHANNEL FOO",
+        "N10 $NEVER",
+        "N10 P1 = FOO[1]",
+        "N10 WORD",
+        "N10 ?",
+    ],
 )
 def test_a_word_of_no_table_is_bad_input_that_names_what_was_expected(decode: Any, program: str) -> None:
     with pytest.raises(InputError, match="expected") as caught:

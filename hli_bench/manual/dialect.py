@@ -7,6 +7,8 @@ measurement, homing and fixed stop manuals, #MEAS page. A word that stands in no
 from collections.abc import Mapping
 from typing import Final
 
+from hli_bench.manual import nc_variables
+
 BUILT: Final = ""
 """Stands for a word that is built; any other text says what a word that is not built belongs to."""
 
@@ -199,8 +201,7 @@ AXIS_COMMANDS: Final = (
 """First words of axis commands, `X[...]`: none is built, nor are M, H and G functions of an axis."""
 
 AXIS_VARIABLES: Final[Mapping[str, str]] = {
-    **dict.fromkeys(("ABS", "PROG", "ACS.ABS", "ACT_POS", "BZP", "RERF"), BUILT),
-    **dict.fromkeys(("MESS", "MERF", "MOFFS", "MEIN", "MEAS.ACS.VALUE", "MEAS.PCS.VALUE"), BUILT),
+    **{row.name: BUILT for row in nc_variables.emulated("A")},
     **dict.fromkeys(("-SWE", "+SWE", "-SWE_MDS", "+SWE_MDS"), "software limits"),
     **dict.fromkeys(("WCS", "MCS", "WCS.ABS", "MCS.ABS", "TRANSFORM", "ACS.ACT_POS"), "other systems"),
     **dict.fromkeys(("MANUAL_OFFSETS", "SOFFS"), _MANUAL),
@@ -223,7 +224,7 @@ AXIS_VARIABLES: Final[Mapping[str, str]] = {
 """Names behind `V.A.`, without the axis."""
 
 GLOBAL_VARIABLES: Final[Mapping[str, str]] = {
-    **dict.fromkeys(("MEAS_TYPE", "FEEDRATE"), BUILT),
+    **{row.name: BUILT for row in nc_variables.emulated("G")},
     **dict.fromkeys(("I", "J", "K", "R", "MERR", "CIRCLE_CP_ABS", "CIRCLE_CPC_ACTIVE"), _CIRCLES),
     **dict.fromkeys(("BLOCK_NR", "MASS_MM", "MASS_360", "PROG_ABS", "ACT_PLANE"), "modal states"),
     **dict.fromkeys(("FEEDRATE_MODE", "FEEDRATE_SCALE"), "modal states"),

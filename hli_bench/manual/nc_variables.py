@@ -1,6 +1,7 @@
 """NC variables (`V.*`) the decoder knows: type, unit, access, and whether a read empties the channel first.
 
-Sources: measurement manual 5, TF5200 programming manual (infosys page 207902603).
+The decoder takes from these rows which names can be read, what may be written, and where a read waits.
+Sources: measurement manual 5, fixed stop manual, TF5200 programming manual 1.32 (its `Integer` is SGN32).
 """
 
 from dataclasses import dataclass
@@ -30,9 +31,20 @@ class NcVariable:
     effect: Effect
     doc: str
 
+    @property
+    def name(self) -> str:
+        """The name without area and axis: `MEAS.ACS.VALUE` of `V.A.MEAS.ACS.VALUE.<axis>`."""
+        return self.pattern.partition(".")[2].partition(".")[2].partition(".<")[0]
+
 
 def _axis(
-    pattern: str, doc: str, *, flush: bool, data_type: DataType = DataType.REAL64, unit: str = "mm, °"
+    pattern: str,
+    doc: str,
+    *,
+    flush: bool,
+    data_type: DataType = DataType.REAL64,
+    unit: str = "mm, °",
+    effect: Effect = Effect.EMULATED,
 ) -> NcVariable:
     """Return a row for a readable axis variable."""
     return NcVariable(
@@ -41,7 +53,7 @@ def _axis(
         unit=unit,
         access=Access.READ,
         flush=flush,
-        effect=Effect.EMULATED,
+        effect=effect,
         doc=doc,
     )
 
@@ -76,16 +88,26 @@ NC_VARIABLES: Final = (
     _axis("V.A.PROG.<axis>", "Programmed position.", flush=False),
     _axis("V.A.ACT_POS.<axis>", "Actual position without offsets.", flush=True),
     _axis("V.A.ACS.ABS.<axis>", "Command position in the axis coordinate system.", flush=False),
-    _axis("V.A.REF.<axis>", "Reference point; filled after homing.", flush=True),
+    _axis("V.A.RERF.<axis>", "The axis is homed.", flush=True, data_type=DataType.BOOLEAN, unit=""),
+    _axis("V.A.REF.<axis>", "Reference point; filled after homing.", flush=True, effect=Effect.REFUSED),
     _axis("V.A.BZP.<axis>", "Offset of the reference point.", flush=False),
     NcVariable(
         pattern="V.G.MEAS_TYPE",
-        data_type=DataType.UNS16,
+        data_type=DataType.SGN32,
         unit="",
         access=Access.READ,
         flush=False,
         effect=Effect.EMULATED,
         doc="Measurement type in force.",
+    ),
+    NcVariable(
+        pattern="V.G.FEEDRATE",
+        data_type=DataType.REAL64,
+        unit="mm/min",
+        access=Access.READ,
+        flush=False,
+        effect=Effect.EMULATED,
+        doc="Feed that was programmed last (F word).",
     ),
     NcVariable(
         pattern="V.G.RW",
@@ -116,7 +138,7 @@ NC_VARIABLES: Final = (
     ),
     NcVariable(
         pattern="V.RTA.FIXED_STOP.ACS.POS.<axis>",
-        data_type=DataType.REAL64,
+        data_type=DataType.SGN64,
         unit="mm, °",
         access=Access.READ,
         flush=True,
@@ -125,7 +147,19 @@ NC_VARIABLES: Final = (
     ),
     _own("V.P", "Own variable, valid in the program and its subroutines until the end of the program."),
     _own("V.S", "Own variable, kept beyond the end of the program."),
-    _own("V.L", "Own variable of the current subroutine level."),
+    _own("V.L", "Own variable of the program and of subroutines it calls directly (none is built)."),
     _own("V.E", "External variable, shared with the PLC."),
 )
 """All rows."""
+
+
+def emulated(area: str) -> tuple[NcVariable, ...]:
+    """Return the variables of an area (`A`, `G`) that have a value here."""
+    return tuple(
+        row for row in NC_VARIABLES if row.pattern.startswith(f"V.{area}.") and row.effect is Effect.EMULATED
+    )
+
+
+def own_areas() -> frozenset[str]:
+    """Return the letters of the areas in which a program names variables itself."""
+    return frozenset(row.pattern[2] for row in NC_VARIABLES if row.pattern.endswith("<name>"))

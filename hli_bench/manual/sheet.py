@@ -30,6 +30,7 @@ class DataType(StrEnum):
     SGN08 = "SGN08"
     SGN16 = "SGN16"
     SGN32 = "SGN32"
+    SGN64 = "SGN64"
     REAL64 = "REAL64"
     STRING = "STRING"
 
@@ -42,6 +43,7 @@ LIMITS: Final[Mapping[DataType, tuple[int, int]]] = {
     DataType.SGN08: (-(2**7), 2**7 - 1),
     DataType.SGN16: (-(2**15), 2**15 - 1),
     DataType.SGN32: (-(2**31), 2**31 - 1),
+    DataType.SGN64: (-(2**63), 2**63 - 1),
 }
 """Smallest and largest value of each whole-number type."""
 

@@ -86,4 +86,5 @@ def test_measuring_variables() -> None:
         assert row.flush
         assert row.access is Access.READ
     assert rows["V.A.MERF.<axis>"].data_type is DataType.BOOLEAN
+    assert rows["V.RTA.FIXED_STOP.ACS.POS.<axis>"].data_type is DataType.SGN64
     assert rows["V.E.<name>"].access is Access.READ_WRITE

@@ -9,22 +9,25 @@ from hli_bench.kernel.decoder.coordinates import rounded
 from hli_bench.kernel.decoder.expressions import evaluate
 from hli_bench.kernel.decoder.faults import CncStop
 from hli_bench.kernel.decoder.text import Scanner, short
-from hli_bench.manual.dialect import AXIS_VARIABLES, BUILT, GLOBAL_VARIABLES, VARIABLE_AREAS, missing
+from hli_bench.manual.dialect import AXIS_VARIABLES, GLOBAL_VARIABLES, VARIABLE_AREAS, missing
 from hli_bench.manual.errors import decoder as errors
 from hli_bench.manual.errors.record import ErrorSheet
+from hli_bench.manual.nc_variables import emulated, own_areas
 
 _PARAMETER = re.compile(r"(P+)([0-9]{1,9}|(?=\[))", re.IGNORECASE)
 _VARIABLE = re.compile(r"V\.([A-Z_]+)\.([-+@]?[A-Z_][A-Z0-9_]*(?:\.[A-Z_][A-Z0-9_]*)*)", re.IGNORECASE)
 MAX_VALUES: Final = 10_000
 """Parameters and own variables of a program (decided here): one that never ends must not fill the memory."""
-_OWN: Final = frozenset("PLSE")
+_OWN: Final = own_areas()
 """Own variables. V.E. is kept by the program alone: the PLC does not see it yet."""
+_OF_AXES: Final = {row.name: row for row in emulated("A")}
+_OF_CHANNEL: Final = {row.name: row for row in emulated("G")}
 
 _NEED_VALUE: Final = frozenset(("MESS", "MOFFS", "MEAS.ACS.VALUE", "MEAS.PCS.VALUE"))
-_READS: Final = _NEED_VALUE | {"ABS", "PROG", "ACS.ABS", "ACT_POS", "MEIN", "BZP", "RERF", "MERF"}
 
 _STRING = re.compile(r'"[^"]*"')
-_FROM_MACHINE = re.compile(r"V\.A\.(?:MESS|MERF|MOFFS|MEAS\.|ACT_POS|RERF)", re.IGNORECASE)
+_FLUSHING: Final = "|".join(re.escape(name) for name, row in _OF_AXES.items() if row.flush)
+_FROM_MACHINE = re.compile(rf"V\.A\.(?:{_FLUSHING})(?![A-Z_0-9])", re.IGNORECASE)
 _POSITION = re.compile(r"V\.A\.(ABS|PROG|ACS\.ABS)(?:\.([A-Z_]\w*)|\[)", re.IGNORECASE)
 
 
@@ -80,7 +83,7 @@ class Variables:
         area, name = self._variable(scanner)
         if area == "A":
             return self._axis_value(scanner, name, start)
-        if area == "G" and name in ("MEAS_TYPE", "FEEDRATE"):
+        if area == "G" and name in _OF_CHANNEL:
             value = self._context.measuring_type if name == "MEAS_TYPE" else self._context.feed
             self._read[f"V.G.{name}"] = float(value)
             return float(value)
@@ -130,7 +133,7 @@ class Variables:
         area, name = self._variable(scanner)
         if area in _OWN:
             return self._own_key(scanner, area, name)
-        if area == "A" or (area == "G" and GLOBAL_VARIABLES.get(name) == BUILT):
+        if area == "A" or (area == "G" and name in _OF_CHANNEL):
             raise self._stop(scanner, errors.VARIABLE_WRITE_DENIED, f"V.{area}.{name}")
         raise self._unknown(scanner, area, name, start)
 
@@ -192,7 +195,7 @@ class Variables:
             index = axis.index
         if what := missing(AXIS_VARIABLES, name):
             raise scanner.not_emulated(f"V.A.{name}: {what} not built", start)
-        if name not in _READS or not self._context.path_axis(index):
+        if name not in _OF_AXES or not self._context.path_axis(index):
             raise self._stop(scanner, errors.UNKNOWN_VARIABLE, f"V.A.{name}")
         return self._note(name, index)
 

@@ -1,5 +1,6 @@
 """The table of NC variables and the decoder agree; what a run leaves for the result."""
 
+import re
 from typing import Any
 
 import pytest
@@ -8,13 +9,13 @@ from hli_bench.base.errors import NotEmulated
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.blocks import Flush
 from hli_bench.kernel.decoder import Decoder, DecoderAxis, DecoderDefaults
-from hli_bench.manual.nc_variables import NC_VARIABLES, NcVariable
+from hli_bench.manual.nc_variables import NC_VARIABLES, Access, NcVariable
 from hli_bench.manual.sheet import Effect
 
 ROWS = [
     pytest.param(row, id=row.pattern)
     for row in NC_VARIABLES
-    if row.pattern.startswith(("V.A.", "V.G.", "V.RTA.")) and row.pattern != "V.A.REF.<axis>"
+    if row.pattern.startswith(("V.A.", "V.G.", "V.RTA."))
 ]
 
 
@@ -24,10 +25,16 @@ def test_every_row_of_the_table_is_read_as_it_says(decode: Any, state: Any, row:
     program = f"G00 Z1\nG100 Z2 F1\nG00 Z1\nP1 = {name}\nM30"
     answer = state(measured={"Z": 2.0}, latched={"Z": True})
     if row.effect is not Effect.EMULATED:
-        with pytest.raises(NotEmulated, match=name):
+        with pytest.raises(NotEmulated, match=re.escape(row.pattern.partition(".<")[0])):
             decode(program, [answer])
         return
     assert any(isinstance(item, Flush) for item in decode(program, [answer])) is row.flush
+
+
+@pytest.mark.parametrize("row", [row for row in ROWS if row.values[0].effect is Effect.EMULATED])
+def test_what_a_program_may_not_write_is_refused(decode: Any, row: NcVariable) -> None:
+    error = decode(f"{row.pattern.replace('<axis>', 'Z')} = 1\nM30")[-1]
+    assert (error.number, row.access) == (20100, Access.READ)
 
 
 @pytest.mark.req("M-007")

@@ -121,6 +121,8 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """Return what `--result` writes, and `notes`; of a bench in real pace also how it kept its cycle."""
         found = asdict(self)
+        if not found["unmeasured"]:
+            del found["unmeasured"]
         del found["lateness"], found["plcs"]
         if self.lateness is None:
             return found

@@ -1,6 +1,6 @@
 """How axes come to stand at an error, as a table by the reaction class of its sheet.
 
-Source: TF5200 diagnosis 1.2; LAG (70020 stops on P-AXIS-00003); decision 0018.
+Source: TF5200 diagnosis 1.2; LAG (70020 stops on P-AXIS-00003); decision 0020.
 """
 
 from collections.abc import Mapping

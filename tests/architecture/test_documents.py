@@ -146,5 +146,11 @@ def test_a_decision_says_context_decision_and_consequence(decision: Path) -> Non
     assert headings == ["Context", "Decision", "Consequence"]
 
 
+@pytest.mark.parametrize("decision", DECISIONS, ids=lambda decision: decision.stem)
+def test_a_decision_says_whether_it_holds(decision: Path) -> None:
+    first = decision.read_text(encoding="utf-8").split("\n## ")[0]
+    assert len(re.findall(r"^Status: \w+", first, re.MULTILINE)) == 1
+
+
 def test_decisions_are_numbered_without_a_gap() -> None:
     assert [int(decision.stem[:4]) for decision in DECISIONS] == list(range(1, len(DECISIONS) + 1))

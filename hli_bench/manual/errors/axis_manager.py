@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from hli_bench.manual.errors.record import NOT_IN_BOOK, ErrorSheet, message, warning
+from hli_bench.manual.errors.record import ErrorSheet, message, warning
 
 TRANSLATORY_AXIS_MODE: Final[ErrorSheet] = warning(
     "translatory_axis_mode",
@@ -186,24 +186,17 @@ SEVERAL_MEASURING_METHODS: Final[ErrorSheet] = warning(
 HOMING_OVERFLOW_RANGE: Final[ErrorSheet] = warning(
     "homing_overflow_range",
     110_482,
-    "axis {0}: shift of the encoder overflow is out of range",
+    "axis {0}: bits of the encoder overflow (P-AXIS-00355) out of range, corrected to 0",
     "logical axis number",
     "wrong value",
     "lower limit",
     "upper limit",
     "corrected value",
 )
-MEASURING_SIMULATION: Final[ErrorSheet] = warning(
-    "measuring_simulation",
-    110_492,
-    "axis {0}: parameters of the measuring simulation are incomplete",
-    "logical axis number",
-    source=NOT_IN_BOOK,
-)
 ZERO_PULSE_HOMING: Final[ErrorSheet] = warning(
     "zero_pulse_homing",
     110_512,
-    "axis {0}: configuration of zero pulse homing is wrong",
+    "axis {0}: homing on the zero pulse and on the encoder overflow at once",
     "logical axis number",
     "current value",
     "current value 2",

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from hli_bench.manual.errors.record import NOT_IN_BOOK, SYSTEM, ErrorSheet, message, program_error, warning
+from hli_bench.manual.errors.record import ErrorSheet, message, program_error, warning
 
 NO_AXIS_PROGRAMMED: Final[ErrorSheet] = warning(
     "no_axis_programmed", 20_003, "this G function needs a programmed axis", "current value"
@@ -354,9 +354,6 @@ MESSAGE_EXPRESSION_EXPECTED: Final[ErrorSheet] = program_error(
 HASH_BRACKET_EXPECTED: Final[ErrorSheet] = program_error(
     "hash_bracket_expected", 20_743, "an opening bracket must follow the # command"
 )
-HASH_TOO_MANY: Final[ErrorSheet] = message(
-    "hash_too_many", 20_744, "too many parameters of a # command", classes=(2, 8), source=SYSTEM
-)
 G_WRONG_TYPE: Final[ErrorSheet] = program_error(
     "g_wrong_type",
     20_772,
@@ -490,9 +487,6 @@ INDEPENDENT_MEASURING_TYPE: Final[ErrorSheet] = program_error(
 )
 TRIGGER_WITHOUT_EDGE_BANDING: Final[ErrorSheet] = program_error(
     "trigger_without_edge_banding", 21_608, "TRIGGER without modal edge banding"
-)
-MODAL_MEASURING_TYPE: Final[ErrorSheet] = program_error(
-    "modal_measuring_type", 21_911, "measuring over several blocks needs type 8", source=NOT_IN_BOOK
 )
 MEAS_KEYWORDS_TYPE: Final[ErrorSheet] = program_error(
     "meas_keywords_type", 21_925, "keywords of #MEAS do not fit the measurement type", "wrong value"

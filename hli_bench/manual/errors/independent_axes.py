@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from hli_bench.manual.errors.record import SYSTEM, ErrorSheet, axis_error, message, motion_error
+from hli_bench.manual.errors.record import ErrorSheet, axis_error, message
 
 SPINDLE_NOT_HOMED: Final[ErrorSheet] = message(
     "spindle_not_homed",
@@ -36,13 +36,6 @@ AUTOMATIC_HOMING_DIRECTION: Final[ErrorSheet] = message(
     "logical axis number",
     "current value",
     classes=(6, 6),
-)
-NO_MEASURED_VALUE: Final[ErrorSheet] = motion_error(
-    "no_measured_value",
-    60_203,
-    "independent axis {0}: no measured value",
-    "logical axis number",
-    source=SYSTEM,
 )
 MEASURING_ALREADY_ACTIVE: Final[ErrorSheet] = message(
     "measuring_already_active",

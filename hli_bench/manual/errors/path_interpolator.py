@@ -2,22 +2,19 @@
 
 from typing import Final
 
-from hli_bench.manual.errors.record import NOT_IN_BOOK, SYSTEM, ErrorSheet, message, motion_error, warning
+from hli_bench.manual.errors.record import SYSTEM, ErrorSheet, message, motion_error, warning
 
 HOMING_WITHOUT_AXES: Final[ErrorSheet] = motion_error(
     "homing_without_axes", 50_003, "homing without an axis", source=SYSTEM
 )
-UNKNOWN_MEASURING_TYPE: Final[ErrorSheet] = motion_error(
-    "unknown_measuring_type", 50_007, "unknown measurement type {0}", "measurement type", source=SYSTEM
-)
 MEASURING_PATH_TOO_SMALL: Final[ErrorSheet] = message(
-    "measuring_path_too_small", 50_010, "path of the measuring block is too small", classes=(6, 6)
+    "measuring_path_too_small",
+    50_010,
+    "edge banding: the path is too short to make the probe ready",
+    classes=(6, 6),
 )
 MEASURING_NOT_INITIALISED: Final[ErrorSheet] = message(
-    "measuring_not_initialised", 50_011, "measuring is not initialised", classes=(6, 6)
-)
-MEASURING_ALREADY_ACTIVE: Final[ErrorSheet] = motion_error(
-    "measuring_already_active", 50_015, "measuring is already active", source=SYSTEM
+    "measuring_not_initialised", 50_011, "edge banding: the probe was not made ready", classes=(6, 6)
 )
 POSITIVE_SOFTWARE_LIMIT: Final[ErrorSheet] = motion_error(
     "positive_software_limit",
@@ -45,13 +42,6 @@ PROBING_NOT_INITIALISED: Final[ErrorSheet] = motion_error(
     "the probe was not ready when the measuring block began",
     "block number",
     "current value",
-)
-PROBING_NOT_INITIALISED_POSITION: Final[ErrorSheet] = message(
-    "probing_not_initialised_position",
-    50_051,
-    "the position control was not ready to measure",
-    classes=(4, 8),
-    source=SYSTEM,
 )
 PROBE_ALREADY_OPERATED: Final[ErrorSheet] = motion_error(
     "probe_already_operated",
@@ -99,9 +89,6 @@ NOT_A_MEASUREMENT_AXIS: Final[ErrorSheet] = motion_error(
     "axis {0} is not a measurement axis (P-AXIS-00118)",
     "logical axis number",
 )
-NO_AXIS_IN_MEASURING_BLOCK: Final[ErrorSheet] = message(
-    "no_axis_in_measuring_block", 50_060, "no axis in the measuring block", classes=(4, 8), source=SYSTEM
-)
 TOO_MANY_MEASURING_AXES: Final[ErrorSheet] = motion_error(
     "too_many_measuring_axes",
     50_061,
@@ -110,14 +97,8 @@ TOO_MANY_MEASURING_AXES: Final[ErrorSheet] = motion_error(
     "allowed axes",
     "measurement type",
 )
-NO_MEASUREMENT_MODAL: Final[ErrorSheet] = warning("no_measurement_modal", 50_063, "no measurement took place")
-UNKNOWN_MEASURING_TYPE_2: Final[ErrorSheet] = message(
-    "unknown_measuring_type_2",
-    50_066,
-    "measurement type {0} is not known to the interpolator",
-    classes=(4, 8),
-    details=("measurement type",),
-    source=SYSTEM,
+NO_MEASUREMENT_MODAL: Final[ErrorSheet] = warning(
+    "no_measurement_modal", 50_063, "edge banding: no probing signal"
 )
 NO_MOTION_INFORMATION: Final[ErrorSheet] = motion_error(
     "no_motion_information", 50_067, "measuring run without motion"
@@ -173,14 +154,6 @@ FIXED_STOP_PARAMETERS: Final[ErrorSheet] = motion_error(
 )
 MODAL_MEASURING_OPEN: Final[ErrorSheet] = motion_error(
     "modal_measuring_open", 50_573, "modal measuring was not switched off"
-)
-MEAS_AXIS_MISSING: Final[ErrorSheet] = message(
-    "meas_axis_missing",
-    50_636,
-    "#MEAS: axis {0} is not in the channel",
-    classes=(6, 8),
-    details=("logical axis number",),
-    source=SYSTEM,
 )
 MEAS_NOT_A_MEASUREMENT_AXIS: Final[ErrorSheet] = motion_error(
     "meas_not_a_measurement_axis",
@@ -239,7 +212,7 @@ HOMING_DISABLED: Final[ErrorSheet] = message(
 INDEPENDENT_NO_MEASUREMENT: Final[ErrorSheet] = message(
     "independent_no_measurement",
     50_706,
-    "independent axis {0}: end of the range reached without probing signal",
+    "axis {0}: no probing signal on the way to the software limit (P-CHAN-00268)",
     "logical axis number",
     classes=(6, 6),
 )
@@ -258,16 +231,6 @@ MEASURING_ACTIVE_2: Final[ErrorSheet] = motion_error(
 )
 MEASURING_NOT_INITIALISED_2: Final[ErrorSheet] = message(
     "measuring_not_initialised_2", 50_834, "the measuring function was not initialised", classes=(4, 8)
-)
-VALUE_NOT_AVAILABLE: Final[ErrorSheet] = motion_error(
-    "value_not_available",
-    50_835,
-    "the measured value of axis {0} is not available",
-    "logical axis number",
-    source=SYSTEM,
-)
-NO_CONTROL_BLOCK: Final[ErrorSheet] = motion_error(
-    "no_control_block", 50_836, "measuring without control block", source=SYSTEM
 )
 FIXED_STOP_BACKWARD_OFF: Final[ErrorSheet] = message(
     "fixed_stop_backward_off",
@@ -300,16 +263,6 @@ FIXED_STOP_NOT_FOUND: Final[ErrorSheet] = motion_error(
     "start [0.1 %]",
     "end [0.1 %]",
 )
-FIXED_STOP_TOO_EARLY: Final[ErrorSheet] = motion_error(
-    "fixed_stop_too_early",
-    50_887,
-    "axis {0} met the stop before monitoring began",
-    "logical axis number",
-    source=SYSTEM,
-)
-FIXED_STOP_NO_POSITION: Final[ErrorSheet] = motion_error(
-    "fixed_stop_no_position", 50_888, "axis {0} has no stop position", "logical axis number", source=SYSTEM
-)
 FIXED_STOP_PROGRAMMED_AGAIN: Final[ErrorSheet] = motion_error(
     "fixed_stop_programmed_again",
     50_889,
@@ -334,13 +287,6 @@ NO_SIGNAL_IGNORED: Final[ErrorSheet] = warning(
     "no_signal_ignored",
     51_058,
     "ERR_NO_SIGNAL does not act in a run that ended by delete distance to go",
-)
-FIXED_STOP_HOMING_COUPLED: Final[ErrorSheet] = motion_error(
-    "fixed_stop_homing_coupled",
-    51_080,
-    "homing to a fixed stop of coupled axis {0}",
-    "logical axis number",
-    source=NOT_IN_BOOK,
 )
 MOTION_NEEDS_HOMING: Final[ErrorSheet] = message(
     "motion_needs_homing",

@@ -26,9 +26,6 @@ NEGATIVE_SOFTWARE_LIMIT: Final[ErrorSheet] = message(
     "end of the block [0.1 µm, 0.0001°]",
     classes=(2, 6),
 )
-FEED_NOT_POSITIVE: Final[ErrorSheet] = message(
-    "feed_not_positive", 120_022, "programmed feed is zero or negative", classes=(2, 8)
-)
 MEASURING_FEED_CORRECTED: Final[ErrorSheet] = warning(
     "measuring_feed_corrected",
     120_213,

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from hli_bench.manual.errors.record import NOT_IN_BOOK, SYSTEM, ErrorSheet, axis_error, message, warning
+from hli_bench.manual.errors.record import NOT_IN_BOOK, ErrorSheet, axis_error, message, warning
 
 POSITION_LAG: Final[ErrorSheet] = message(
     "position_lag",
@@ -311,14 +311,6 @@ EDGE_NOT_CHANGEABLE: Final[ErrorSheet] = axis_error(
     "input",
     "corrected input",
 )
-CHANGE_WHILE_MEASURING: Final[ErrorSheet] = message(
-    "change_while_measuring",
-    70_393,
-    "axis {0}: no change of the measuring parameters during a run",
-    classes=(7, 8),
-    details=("logical axis number",),
-    source=SYSTEM,
-)
 HOMING_PATH: Final[ErrorSheet] = axis_error(
     "homing_path",
     70_394,
@@ -388,21 +380,6 @@ HOMING_ENCODER: Final[ErrorSheet] = axis_error(
     "current value",
     "wrong value",
 )
-EXTERNAL_PROBING_BUSY: Final[ErrorSheet] = message(
-    "external_probing_busy",
-    70_476,
-    "axis {0}: the external probing interface is still occupied",
-    classes=(7, 8),
-    details=("logical axis number",),
-    source=SYSTEM,
-)
-EXTERNAL_PROBING_ACKNOWLEDGE: Final[ErrorSheet] = axis_error(
-    "external_probing_acknowledge",
-    70_477,
-    "axis {0}: an acknowledgement of the external probing interface does not fit",
-    "logical axis number",
-    source=SYSTEM,
-)
 MASTER_NOT_PROGRAMMED: Final[ErrorSheet] = axis_error(
     "master_not_programmed",
     70_516,
@@ -445,20 +422,6 @@ FIXED_STOP_NO_TORQUE_LIMIT: Final[ErrorSheet] = axis_error(
     "axis {0}: no drive object TORQUE_LIMIT is configured",
     details=("logical axis number",),
 )
-FIXED_STOP_READ_WRITE: Final[ErrorSheet] = axis_error(
-    "fixed_stop_read_write",
-    70_542,
-    "axis {0}: drive object cannot be read or written",
-    "logical axis number",
-    source=SYSTEM,
-)
-FIXED_STOP_OBJECT_BUSY: Final[ErrorSheet] = axis_error(
-    "fixed_stop_object_busy",
-    70_543,
-    "axis {0}: access to drive objects is busy",
-    "logical axis number",
-    source=SYSTEM,
-)
 FIXED_STOP_OBJECT_TIMEOUT: Final[ErrorSheet] = message(
     "fixed_stop_object_timeout",
     70_544,
@@ -467,14 +430,6 @@ FIXED_STOP_OBJECT_TIMEOUT: Final[ErrorSheet] = message(
     "drive type",
     "current value",
     classes=(6, 6),
-)
-FIXED_STOP_STATE: Final[ErrorSheet] = message(
-    "fixed_stop_state",
-    70_545,
-    "axis {0}: move to fixed stop is in a wrong state",
-    classes=(7, 8),
-    details=("logical axis number",),
-    source=SYSTEM,
 )
 FIXED_STOP_RELEASES: Final[ErrorSheet] = message(
     "fixed_stop_releases",
@@ -535,13 +490,6 @@ FIXED_STOP_TWO_TORQUE_LIMITS: Final[ErrorSheet] = axis_error(
     "current value",
     "wrong value 2",
     "current value 2",
-)
-GANTRY_CHANGE_WHILE_PROBING: Final[ErrorSheet] = axis_error(
-    "gantry_change_while_probing",
-    70_573,
-    "axis {0}: gantry change while probing",
-    "logical axis number",
-    source=NOT_IN_BOOK,
 )
 GANTRY_CHANGE_AT_STOP: Final[ErrorSheet] = axis_error(
     "gantry_change_at_stop",

@@ -138,6 +138,17 @@ class Signals(Plc):
     assert not any(name.startswith("V.A.MESS") for name in result.variables) or not missing
 
 
+def test_a_run_under_a_system_that_was_broken_off_is_not_remarked(make, own_signals):
+    """X has latched, Y and Z have not when the program is aborted: no value, and no word about what is missing."""
+    bench = make(BY_PLC, plc=[own_signals({1: 20_000})])
+    program = "N10 G00 X0 Y0 Z0\nN20 #CS ON[0,0,0,0,0,0]\nN30 G100 X10 F60\nN40 M30\n"
+    result = bench.run(program, limit_s=6.0)
+    assert result.status == "aborted"
+    assert bench.position_mm("X") > 2.5
+    assert (list(result.errors), list(result.measurements), list(result.unmeasured)) == ([], [], [])
+    assert result.variables["V.A.MERF.X"] == 0.0
+
+
 @pytest.mark.req("M-046", "M-070", "M-072")
 def test_values_of_all_axes_are_mapped_into_the_system(make, face):
     """Rotated by 90 degrees about X: the programmed Y is the machine's Z."""

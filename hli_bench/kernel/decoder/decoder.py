@@ -8,7 +8,7 @@ from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.blocks import Idle, Line, MachineState, Source
 from hli_bench.kernel.decoder.commands import COMMANDS
 from hli_bench.kernel.decoder.configuration import DecoderAxis, DecoderDefaults
-from hli_bench.kernel.decoder.context import Context, Item, Steps
+from hli_bench.kernel.decoder.context import LARGEST_POSITION, Context, Item, Steps
 from hli_bench.kernel.decoder.control import Control
 from hli_bench.kernel.decoder.faults import CncStop, cnc_error
 from hli_bench.kernel.decoder.text import MAX_LINE, Lines, Scanner, read_block, short
@@ -19,7 +19,7 @@ from hli_bench.manual.dialect import SIGNS, missing
 from hli_bench.manual.errors import Severity
 from hli_bench.manual.errors import decoder as errors
 
-_PLAIN_WORDS = re.compile(r"([A-Za-z])([+-]?(?:[0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]{1,20}))|([^ \t\r\n])")
+_PLAIN_WORDS = re.compile(r"([A-Za-z])([+-]?(?:[0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]{1,20}))|[^ \t\r\n]")
 _HASH = re.compile(r"#\s*([A-Z]+)", re.IGNORECASE)
 _SUBROUTINE = re.compile(r"%L\s", re.IGNORECASE)
 _RAPID: Final = {"0": True, "00": True, "1": False, "01": False}
@@ -128,7 +128,7 @@ class Decoder:
         rapid, absolute, feed = context.rapid, context.absolute, context.feed
         words: list[tuple[AxisIndex, float]] = []
         text = raw if ";" not in raw else raw[: raw.index(";")]
-        for letter, value, _ in _PLAIN_WORDS.findall(text):
+        for letter, value in _PLAIN_WORDS.findall(text):
             axis = axis_of.get(letter)
             if axis is not None:
                 words.append((axis, float(value)))
@@ -172,7 +172,9 @@ class Decoder:
         target = where.move(words, absolute=absolute)
         if not target:
             return None
-        context.check_format(target, source)
+        for position in target.values():
+            if not -LARGEST_POSITION <= position <= LARGEST_POSITION:
+                context.check_format(target, source)
         context.measurements.state = None
         return Line(source=source, rapid=rapid, feed=feed, target=target)
 

@@ -259,8 +259,11 @@ def _event_demanded(run: Run) -> bool:
     return run.core.setup.channel.meas_error_no_signal or run.block.measuring_type == FEED_FROM_AXIS
 
 
-def _all_or_none(run: Run) -> None:
-    """Under a #CS a value needs every main axis: what only some of them latched is not taken over."""
+def _all_or_none(run: Run, *, ended: bool) -> None:
+    """Under a #CS a value needs every main axis: what only some of them latched is not taken over.
+
+    Of a run that came to its end this is told; one that was broken off had no chance to deliver more.
+    """
     latched = [axis for axis in run.block.together if axis in run.values]
     silent = [axis for axis in run.block.together if axis not in run.values]
     if not (latched and silent):
@@ -268,10 +271,11 @@ def _all_or_none(run: Run) -> None:
     for axis in latched:
         del run.values[axis]
         run.before_target[axis] = False
-        run.missed.append(axis)
-        run.reported.add(axis)
         run.core.show(axis, "lr_state/measure_value_ok_r", False)
-    if not run.core.failed:
+    if ended:
+        run.missed += latched
+        run.reported.update(latched)
+    if ended and not run.core.failed:
         for axis in silent:
             number = run.core.axis(axis).number
             run.core.report(decoder_errors.TRANSFORMED_VALUES, run.block.source, number, axis=axis)
@@ -293,13 +297,17 @@ def _retract(run: Run) -> None:
     core.preparation.retraction(target, tenth_um_per_s(RETRACTION_FEED))
 
 
-def _finish(run: Run) -> None:
+def _disarm(run: Run) -> None:
     core = run.core
     core.preparation.synchronise()
     for axis in run.block.axes:
         probing.source(_probe(run, axis).signal).disarm(core, axis)
         core.show(axis, "lr_state/measurement_active_r", False)
-    _all_or_none(run)
+
+
+def _finish(run: Run) -> None:
+    _disarm(run)
+    _all_or_none(run, ended=True)
 
 
 def _after_standstill(run: Run) -> str:
@@ -373,4 +381,5 @@ def table(run: Run) -> Table[Run]:
 
 def abort(run: Run) -> None:
     """Switch the sources off when the program ends in the middle of a run."""
-    _finish(run)
+    _disarm(run)
+    _all_or_none(run, ended=False)

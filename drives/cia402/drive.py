@@ -16,7 +16,7 @@ from drives.cia402 import telegram
 from drives.cia402.faults import Fault, error_register
 from drives.cia402.modes import Mode, is_supported
 from drives.cia402.options import DriveOptions, FollowingErrorReaction
-from drives.cia402.ramps import DISABLE, STAYS, Ramps
+from drives.cia402.ramps import DISABLE, STAYS, Ramps, number_of
 from drives.cia402.states import (
     ENABLE_OPERATION,
     ControlBit,
@@ -33,7 +33,7 @@ from hli_bench.laws.rows import Cells
 from hli_bench.protocols.canopen import cia402_objects as objects
 from hli_bench.protocols.canopen.aborts import AbortCode, SdoAbort
 from hli_bench.protocols.canopen.cia402_objects import ObjectAddress
-from hli_bench.protocols.canopen.datatypes import Value
+from hli_bench.protocols.canopen.datatypes import Value, integer_range
 from hli_bench.protocols.canopen.device import Device
 from hli_bench.protocols.canopen.eds import ObjectDictionary, load
 from hli_bench.protocols.canopen.nmt import NmtState
@@ -211,7 +211,7 @@ class Drive:
         if self.state in {State.FAULT_REACTION_ACTIVE, State.FAULT}:
             return
         self._fault = code
-        self.device.values.put(*objects.ERROR_CODE, code)
+        self._show_error(code)
         self.device.emcy.occur(code, error_register(code))
         option = self._option(objects.FAULT_REACTION_OPTION)
         if option != DISABLE and self.state in _POWERED:
@@ -261,24 +261,31 @@ class Drive:
         self._probe_word = 0
         self._destination: State | None = None
         self._deadline = Ns(0)
-        values, row = self.device.values, self._row
-        self._mode = int(values.stored(*objects.MODE))
+        row = self._row
+        self._mode = int(self._stored(objects.MODE))
         self._ramps.let_go()
-        first, second = (values.stored(*address) for address in objects.PROBE_SOURCES)
+        first, second = (self._stored(address) for address in objects.PROBE_SOURCES)
         self._sources = (first, second)
         row["fault"] = 0
-        row["target"] = values.stored(*objects.TARGET_POSITION)
-        row["following_window"] = values.stored(*objects.FOLLOWING_WINDOW)
-        row["following_timeout_ms"] = values.stored(*objects.FOLLOWING_TIMEOUT)
+        row["target"] = self._stored(objects.TARGET_POSITION)
+        row["following_window"] = self._stored(objects.FOLLOWING_WINDOW)
+        row["following_timeout_ms"] = self._stored(objects.FOLLOWING_TIMEOUT)
         for address, number in _TORQUE_LIMITS.items():
-            self._limit_torque(number, values.stored(*address))
-        self._write_probe_function(values.stored(*objects.PROBE_FUNCTION))
+            self._limit_torque(number, self._stored(address))
+        self._write_probe_function(self._stored(objects.PROBE_FUNCTION))
         self._enter(State.SWITCH_ON_DISABLED)
+
+    def _stored(self, address: ObjectAddress) -> int:
+        """Return the number that is stored for an object, or how the profile lets one act that is not there."""
+        values = self.device.values
+        number = values.stored(*address) if values.has(*address) else objects.ABSENT.get(address, 0)
+        return int(number)
 
     def _hook_reads(self, cells: Cells) -> None:
         """Let the objects of the machine's numbers answer from the row."""
         values = self.device.values
-        values.on_read_made(_CELLS, lambda address: partial(cells(*_CELLS[address]).__getitem__, 0))
+        present = [address for address in _CELLS if values.has(*address)]
+        values.on_read_made(present, lambda address: partial(cells(*_CELLS[address]).__getitem__, 0))
         computed: dict[ObjectAddress, Callable[[], Value]] = {
             objects.STATUSWORD: lambda: self.statusword,
             objects.CONTROLWORD: lambda: self._word,
@@ -287,7 +294,8 @@ class Drive:
             objects.RATED_TORQUE: lambda: round(float(self._row["rated_torque"]) * 1000.0),
         }
         for address, source in computed.items():
-            values.on_read(*address, source)
+            if values.has(*address):
+                values.on_read(*address, source)
 
     def _hook_writes(self) -> None:
         """Let writes from the bus reach the row and the state machine."""
@@ -304,7 +312,8 @@ class Drive:
         sinks |= dict.fromkeys(_STOP_OPTIONS, self._write_option)
         for slot, address in enumerate(objects.PROBE_SOURCES):
             sinks[address] = partial(self._write_source, slot)
-        self.device.values.on_writes(sinks)
+        values = self.device.values
+        values.on_writes({address: sink for address, sink in sinks.items() if values.has(*address)})
 
     def _write_controlword(self, value: Value) -> None:
         """Run the state machine; the same word again changes nothing."""
@@ -344,11 +353,15 @@ class Drive:
         else:
             self._ramps.begin(option)
 
+    def _show_error(self, code: int) -> None:
+        if self.device.values.has(*objects.ERROR_CODE):
+            self.device.values.put(*objects.ERROR_CODE, code)
+
     def _reset_fault(self) -> None:
         """Clear the fault; one whose cause persists comes back from the law."""
         self._row["fault"] = 0
         self._row["following_elapsed_ns"] = 0
-        self.device.values.put(*objects.ERROR_CODE, 0)
+        self._show_error(0)
         self.device.emcy.recover(self._fault)
         self._fault = 0
 
@@ -425,7 +438,8 @@ class Drive:
         self._probe_function[0] = resolve_source(self._probe_word, self._sources)
 
     def _option(self, address: ObjectAddress) -> int:
-        return self.device.values.number(*address)
+        """Return the present value of an object; one that the dictionary lacks, or leaves open, acts by the profile."""
+        return number_of(self.device.values, address)
 
 
 def create(name: str, node_id: int, eds_path: Path, row: Any, options: Mapping[str, object]) -> Drive:
@@ -433,11 +447,23 @@ def create(name: str, node_id: int, eds_path: Path, row: Any, options: Mapping[s
     checked = DriveOptions.from_mapping(options, name)
     description = load(eds_path)
     _check(description, eds_path)
-    return Drive(name, Device(description, node_id), row, checked)
+    try:
+        return Drive(name, Device(description, node_id), row, checked)
+    except InputError as error:
+        raise InputError(error.message, file=str(eds_path)) from error
+    except (SdoAbort, TypeError) as error:
+        # an object that the device is built on is of another kind than the standard's, or half there
+        raise InputError(f"its objects make no CANopen device: {error}", file=str(eds_path)) from error
 
 
 @lru_cache(maxsize=64)
 def _check(description: ObjectDictionary, eds_path: Path) -> None:
-    """Raise InputError when an EDS lacks what the profile needs."""
-    if lacking := objects.lacking(description.entries):
+    """Raise InputError when an EDS lacks what a drive cannot do without, or has it as something else."""
+    needed = (*objects.NEEDED, *objects.CYCLIC)
+    if lacking := objects.lacking(description.entries, needed):
         raise InputError(f"a CiA 402 drive needs the objects {', '.join(lacking)}", file=str(eds_path))
+    numbers = [address for address in (*needed, *objects.ABSENT) if address in description]
+    wrong = [one for one in numbers if integer_range(description[one].data_type) is None]
+    if wrong:
+        named = ", ".join(f"{one.object_index:04X}:{one.subindex:02X}" for one in wrong)
+        raise InputError(f"a CiA 402 drive needs integers in the objects {named}", file=str(eds_path))

@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from hli_bench.base.time import NS_PER_S, Ns
 from hli_bench.protocols.canopen import cia402_objects as objects
+from hli_bench.protocols.canopen.cia402_objects import ObjectAddress
 from hli_bench.protocols.canopen.dictionary import ObjectValues
 
 DISABLE: Final = 0
@@ -17,6 +18,15 @@ STAYS: Final = 5
 """Quick stop options from here on are those from 1 on, and the drive stays in QUICK STOP ACTIVE."""
 _STAYING: Final = STAYS - SLOW_DOWN
 _OBJECTS: Final = {SLOW_DOWN: objects.PROFILE_DECELERATION, QUICK: objects.QUICK_STOP_DECELERATION}
+
+
+def number_of(values: ObjectValues, address: ObjectAddress) -> int:
+    """Return the present value of an object; one that the dictionary lacks, or leaves open, acts by the profile."""
+    missing = objects.ABSENT.get(address, 0)
+    if not values.has(*address):
+        return missing
+    left_open = address == objects.SUPPORTED_MODES and values.description[address].default is None
+    return missing if left_open else values.number(*address)
 
 
 class Ramps:
@@ -64,7 +74,7 @@ class Ramps:
         """Return the deceleration in increments/s2."""
         address = _OBJECTS.get(option)
         if address is not None:
-            return float(self._values.number(*address))
+            return float(max(number_of(self._values, address), 1))
         row = self._row
         limits = ("torque_limit_permille", "positive_permille", "negative_permille", "peak_permille")
         torque = min(float(row[name]) for name in limits) * 1e-3 * float(row["rated_torque"])

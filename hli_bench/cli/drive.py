@@ -12,8 +12,10 @@ from hli_bench.bench.drive_models import drive_model, eds_of
 from hli_bench.cli import tables
 from hli_bench.cli.console import say, tell
 from hli_bench.cli.options import Commands
-from hli_bench.protocols.canopen.cia402_objects import lacking
+from hli_bench.protocols.canopen.cia402_objects import CONTROLWORD, CYCLIC, STATUSWORD, features_off, lacking
+from hli_bench.protocols.canopen.datatypes import size_of
 from hli_bench.protocols.canopen.eds import Entry, ObjectDictionary, load
+from hli_bench.protocols.canopen.notation import written_in_hex
 
 MODELS: Final = "drives.models"
 CIA402: Final = 402
@@ -33,8 +35,8 @@ def add(commands: Commands) -> None:
     check = actions.add_parser(
         "check",
         help="check an EDS file",
-        description="Reads an EDS or DCF, and for a CiA 402 drive looks whether it has the objects that the "
-        "emulated drive needs.",
+        description="Reads an EDS or DCF. What is wrong with it is said, all of it; an error is only what the bench "
+        "cannot work with. Of a CiA 402 drive it says which features are off for want of their objects.",
     )
     check.add_argument("files", metavar="FILE.eds", nargs="+")
     check.set_defaults(execute=check_files)
@@ -73,8 +75,11 @@ def row(entry: Entry) -> Sequence[str]:
 
 
 def _default(entry: Entry) -> str:
-    if isinstance(entry.default, int) and entry.default_plus_node_id:
-        return f"0x{entry.default:X} + node id"
+    if isinstance(entry.default, int):
+        if entry.default_plus_node_id:
+            return f"0x{entry.default:X} + node id"
+        if written_in_hex(entry):
+            return f"0x{entry.default:0{2 * (size_of(entry.data_type) or 1)}X}"
     return "" if entry.default is None else str(entry.default)
 
 
@@ -88,22 +93,30 @@ def check_files(arguments: argparse.Namespace) -> int:
 
 
 def check_file(path: Path) -> int:
-    """Print what a file holds or what is wrong with it."""
+    """Print what a file holds and what is wrong with it."""
     try:
         described = load(path)
+        for remark in described.remarks:
+            tell(remark)
         if is_402(described) and (missing := lacking(described.entries)):
             raise InputError(f"a CiA 402 drive needs the objects {', '.join(missing)}", file=str(path))
     except InputError as error:
         tell(error)
         return error.exit_status
-    kind = "CiA 402 drive" if is_402(described) else "CANopen device"
+    drive = is_402(described)
+    kind = "CiA 402 drive" if drive else "CANopen device"
     say(f"{path}: {kind}, {len(described.names)} objects, {len(described.entries)} entries, accepted")
+    if drive:
+        if missing := lacking(described.entries, CYCLIC):
+            say(f"  cannot be moved by the bench's CNC, for want of {', '.join(missing)}")
+        for off in features_off(described.entries):
+            say(f"  off, for want of objects: {off}")
     return 0
 
 
 def is_402(described: ObjectDictionary) -> bool:
-    """Tell whether the device type (0x1000, low word) names the drive profile."""
-    if DEVICE_TYPE not in described:
-        return False
-    number = described[DEVICE_TYPE].default
-    return isinstance(number, int) and number & 0xFFFF == CIA402
+    """Tell whether it is a drive: by its device type (0x1000, low word), where that is open by its status word."""
+    number = described[DEVICE_TYPE].default if DEVICE_TYPE in described else None
+    if not isinstance(number, int) or not number:
+        return CONTROLWORD in described and STATUSWORD in described
+    return number & 0xFFFF == CIA402

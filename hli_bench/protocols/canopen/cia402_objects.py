@@ -1,6 +1,6 @@
 """Addresses of the CiA 402 objects that the bench uses, and what of them a dictionary lacks."""
 
-from collections.abc import Container
+from collections.abc import Container, Iterable, Mapping
 from typing import Final, NamedTuple
 
 
@@ -49,15 +49,59 @@ POSITION_DEMAND_INTERNAL: Final = ObjectAddress(0x60FC)
 DIGITAL_INPUTS: Final = ObjectAddress(0x60FD)
 SUPPORTED_MODES: Final = ObjectAddress(0x6502)
 
-NEEDED: Final = (
-    *(address for address in tuple(globals().values()) if isinstance(address, ObjectAddress)),
-    *LATCHES,
-    *PROBE_SOURCES,
-    *LATCH_TIMES,
+NEEDED: Final = (CONTROLWORD, STATUSWORD, MODE, MODE_DISPLAY)
+"""What makes a device a CiA 402 drive."""
+CYCLIC: Final = (TARGET_POSITION, POSITION_ACTUAL)
+"""What a drive needs beside it to be moved by a CNC in cyclic synchronous position mode."""
+_TOUCH_PROBE: Final = (PROBE_FUNCTION, PROBE_STATUS, LATCHES[0])
+FEATURES: Final = (
+    ("touch probe (measuring with the source DRIVE, homing on the zero pulse)", _TOUCH_PROBE),
+    ("latches of the negative edge and of the second input", LATCHES[1:]),
+    ("choice of the latch source", PROBE_SOURCES),
+    ("time stamps of the latches", LATCH_TIMES),
+    ("torque limit (fixed stop, #DRIVE)", (MAX_TORQUE,)),
+    ("torque limit by direction", (POSITIVE_TORQUE_LIMIT, NEGATIVE_TORQUE_LIMIT)),
+    ("actual torque and following error", (TORQUE_ACTUAL, FOLLOWING_ERROR)),
+    ("following error monitoring", (FOLLOWING_WINDOW, FOLLOWING_TIMEOUT)),
+    ("digital inputs (cam at the drive)", (DIGITAL_INPUTS,)),
+    (
+        "choice of how it stops",
+        (
+            QUICK_STOP_OPTION,
+            HALT_OPTION,
+            FAULT_REACTION_OPTION,
+            PROFILE_DECELERATION,
+            QUICK_STOP_DECELERATION,
+        ),
+    ),
 )
-"""Every object of this module: what the EDS of a drive must have."""
+"""Features of the bench, and the objects without which they are off."""
+ABSENT: Final[Mapping[ObjectAddress, int]] = {
+    ABORT_CONNECTION_OPTION: 1,
+    QUICK_STOP_OPTION: 2,
+    SHUTDOWN_OPTION: 0,
+    DISABLE_OPERATION_OPTION: 1,
+    HALT_OPTION: 1,
+    FAULT_REACTION_OPTION: 2,
+    PROFILE_DECELERATION: 262_144_000,
+    QUICK_STOP_DECELERATION: 1_048_576_000,
+    FOLLOWING_WINDOW: 0xFFFFFFFF,
+    MAX_TORQUE: 0xFFFF,
+    POSITIVE_TORQUE_LIMIT: 0xFFFF,
+    NEGATIVE_TORQUE_LIMIT: 0xFFFF,
+    PROBE_SOURCES[0]: 1,
+    PROBE_SOURCES[1]: 2,
+    SUPPORTED_MODES: 0x80,
+}
+"""How a drive acts whose dictionary lacks an object, where that is not 0: as the profile says, limits are off."""
 
 
-def lacking(entries: Container[tuple[int, int]]) -> list[str]:
-    """Return the objects that a drive needs and a dictionary with these entries lacks, as `6041:00`."""
-    return [f"{index:04X}:{subindex:02X}" for index, subindex in NEEDED if (index, subindex) not in entries]
+def lacking(entries: Container[tuple[int, int]], needed: Iterable[ObjectAddress] = NEEDED) -> list[str]:
+    """Return the objects that are needed and a dictionary with these entries lacks, as `6041:00`."""
+    return [f"{index:04X}:{subindex:02X}" for index, subindex in needed if (index, subindex) not in entries]
+
+
+def features_off(entries: Container[tuple[int, int]]) -> list[str]:
+    """Return the features that are off with these entries, each with the objects that are lacking."""
+    found = [(feature, lacking(entries, needed)) for feature, needed in FEATURES]
+    return [f"{feature}: {', '.join(missing)}" for feature, missing in found if missing]

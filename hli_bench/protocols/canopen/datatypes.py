@@ -112,7 +112,7 @@ def parse(kind: DataType, text: str) -> Value:
     if kind in _TEXT:
         return text
     if kind in _REAL:
-        return float(text)
+        return _real(kind, text)
     limits = integer_range(kind)
     if limits is None:
         return bytes.fromhex(text)
@@ -122,6 +122,17 @@ def parse(kind: DataType, text: str) -> Value:
     if not limits[0] <= number <= limits[1]:
         raise ValueError(f"{text} does not fit {kind.name} ({limits[0]}..{limits[1]})")
     return number
+
+
+def _real(kind: DataType, text: str) -> float:
+    """Return a decimal number, or the one whose bits are printed in hexadecimal."""
+    if not text.strip().lower().startswith("0x"):
+        return float(text)
+    codec = _CODECS[kind]
+    bits = int(text, 16)
+    if bits >> 8 * codec.size:
+        raise ValueError(f"{text} has more bits than {kind.name}")
+    return float(codec.unpack(bits.to_bytes(codec.size, "little"))[0])
 
 
 def _integer(text: str) -> int:

@@ -45,7 +45,7 @@ class EmergencyProducer:
         self._allowed_at = Ns(0)
         self.active: dict[int, ErrorRegister] = {}
         """Errors that have occurred and not recovered, with their bits of the register."""
-        self._history_depth = len(values.description.subindices(_HISTORY))
+        self._history_depth = len(values.description.subindices(_HISTORY)) if values.has(_HISTORY) else 0
         if self._history_depth:
             values.on_write(_HISTORY, 0, self._clear_history)
         if values.has(_COB_ID):
@@ -99,7 +99,8 @@ class EmergencyProducer:
         register = 0
         for bits in self.active.values():
             register |= bits
-        self._values.put(_REGISTER, 0, register)
+        if self._values.has(_REGISTER):
+            self._values.put(_REGISTER, 0, register)
         return register
 
     def _remember(self, code: int) -> None:

@@ -59,11 +59,54 @@ def test_a_drive_that_lacks_an_object_is_not_accepted(
     assert str(SERVO) in said.out
 
 
-def test_a_broken_eds_is_named_by_line(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    path = tmp_path / "broken.eds"
-    path.write_text("[1000]\nParameterName\n", encoding="latin-1")
-    assert main(["drive", "check", str(path)]) == 2
-    assert capsys.readouterr().err == f"{path}:2: 'ParameterName' is neither [section] nor key=value\n"
+def test_what_is_wrong_with_an_eds_is_said_at_once_and_it_is_accepted(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "bent.eds"
+    head = "[{0}]\nParameterName=x\nDataType={1}\nAccessType=ro\n"
+    text = (
+        head.format("1000", 7)
+        + head.format("2008", 2)
+        + "LowLimit=5\nHighLimit=1\n"
+        + head.format("2009", 0x99)
+    )
+    path.write_text(text, encoding="latin-1")
+    assert main(["drive", "check", str(path)]) == 0
+    said = capsys.readouterr()
+    assert [line.split(":")[1] for line in said.err.splitlines()] == ["9", "13"]
+    assert "accepted" in said.out
+
+
+def test_a_drive_with_the_least_says_what_is_off(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """No device type, no modes: it is a drive by its control and status word."""
+    path = tmp_path / "least.eds"
+    path.write_text(
+        "".join(
+            f"[{index}]\nParameterName=x\nDataType={kind}\nAccessType=rw\n"
+            for index, kind in (("1000", 7), ("6040", 6), ("6041", 6), ("6060", 2), ("6061", 2), ("6502", 7))
+        )
+    )
+    assert main(["drive", "check", str(path)]) == 0
+    said = capsys.readouterr()
+    assert said.err == ""
+    assert "CiA 402 drive" in said.out
+    for feature in ("touch probe", "torque limit", "time stamps"):
+        assert f"off, for want of objects: {feature}" in said.out
+    assert "cannot be moved by the bench's CNC, for want of 607A:00, 6064:00" in said.out
+
+
+def test_words_of_bits_are_shown_in_hexadecimal(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["drive", "show", "servo402"]) == 0
+    lines = {line.split()[0]: line for line in capsys.readouterr().out.splitlines()}
+    for address, text in (
+        ("1600:01", "0x60400010"),
+        ("1000:00", "0x00020192"),
+        ("1018:01", "0x00FF0402"),
+        ("6502:00", "0x00000080"),
+        ("1600:00", " 2"),
+        ("6065:00", " 1048575"),
+    ):
+        assert lines[address].rstrip().endswith(text), lines[address]
 
 
 def test_a_machine_is_checked_with_its_settings(capsys: pytest.CaptureFixture[str]) -> None:

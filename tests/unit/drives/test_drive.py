@@ -371,12 +371,48 @@ def test_options_are_checked() -> None:
         DriveOptions.from_mapping({"following_error": "ignore"}, "Z")
 
 
+def without(eds: Any, *indices: int) -> str:
+    """Return the text of an EDS without some objects."""
+    text: str = eds.read_text()
+    for index in indices:
+        text = text.replace(f"[{index:04X}", f"[Gone{index:04X}")
+    return text
+
+
 def test_an_eds_without_a_needed_object_is_bad_input(eds: Any, row: Any, tmp_path: Any) -> None:
-    text = eds.read_text().replace("[60B9]", "[2FFF]").replace("=0x60B9", "=0x2FFF")
     poor = tmp_path / "poor.eds"
-    poor.write_text(text)
-    with pytest.raises(InputError, match=r"poor.eds: a CiA 402 drive needs the objects 60B9:00"):
+    poor.write_text(without(eds, 0x6041, 0x6064))
+    with pytest.raises(InputError, match=r"poor.eds: a CiA 402 drive needs the objects 6041:00, 6064:00"):
         create("Z", 1, poor, row, {})
+    poor.write_text(eds.read_text().replace("[6041]\n", "[6041]\nDataType=9\n"))
+    text = poor.read_text()
+    at = text.index("DataType=0x0006", text.index("[6041]"))
+    poor.write_text(text[:at] + text[at + len("DataType=0x0006\n") :])
+    with pytest.raises(InputError, match="needs integers in the objects 6041:00"):
+        create("Z", 1, poor, row, {})
+
+
+def test_a_drive_without_what_is_optional_runs(eds: Any, row: Any, tmp_path: Any) -> None:
+    """No option codes, limits, window, touch probe, register of errors: it acts as the profile says."""
+    small = tmp_path / "small.eds"
+    gone = (0x1001, 0x1003, 0x6007, 0x603F, *range(0x605A, 0x605F), 0x6065, 0x6066, 0x6072, 0x6084, 0x6085)
+    probe = (0x1401, 0x1601, 0x1801, 0x1802, 0x1803, 0x1A01, 0x1A02, 0x1A03, *range(0x60B8, 0x60BE), 0x60D0)
+    small.write_text(
+        without(eds, *gone, *probe, *range(0x60D1, 0x60D5), 0x60E0, 0x60E1).replace(
+            "0x00000080\nPDO", "\nPDO"
+        )
+    )
+    drive = create("Z", NODE_ID, small, row, {})
+    drive.power_on()
+    for word in (0x06, 0x07, 0x0F):
+        drive.exchange(word, 5, 0, Ns(0))
+    assert drive.state is State.OPERATION_ENABLED
+    assert (row["torque_limit_permille"], row["following_window"]) == (3000, 0xFFFFFFFF)
+    drive.device.values.download(0x6060, 0, b"\x08")
+    drive.fault(0x7305)
+    drive.exchange(0x0F, 5, 0, Ns(0))
+    drive.exchange(0x0F, 5, 0, Ns(1))
+    assert drive.state is State.FAULT
 
 
 def test_ratings_are_those_of_the_machine_folder(row: Any) -> None:

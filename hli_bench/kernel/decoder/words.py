@@ -78,7 +78,7 @@ class WordReader:
         _modal(context, words, scanner)
         special = [number for number in words.functions if number in TAKING_AXES]
         if special.count(100) > 1:
-            raise CncStop(errors.MEASURING_FUNCTION_TWICE, scanner.block.source)
+            raise CncStop(errors.MEASURING_FUNCTION_TWICE, scanner.block.source, 100)
         if len(special) > 1:
             both = " and ".join(f"G{number}" for number in special)
             raise scanner.error(f"expected one of {both} in a block: each takes the axis words", words.at)
@@ -262,7 +262,7 @@ def _home(context: Context, words: Words, scanner: Scanner) -> Steps:
             name = context.axes[axis].name
             raise scanner.not_emulated(f"G74: homing of spindle {name} (homing manual 2.3.2)", words.at)
         if rank != int(rank) or rank < 1:
-            raise CncStop(errors.HOMING_RANK_RANGE, scanner.block.source)
+            raise CncStop(errors.HOMING_RANK_RANGE, scanner.block.source, context.axes[axis].number, rank, 1)
         ranks[axis] = int(rank)
     context.coordinates.forget(list(ranks), keep_programmed=False)
     context.moved()

@@ -188,7 +188,7 @@ def _stop_refused(core: Core, block: MeasuringRun, index: AxisIndex) -> bool:
     axis = core.axis(index)
     per_mille = fixed_stop_start_per_mille(axis.params)
     if per_mille > 1000:
-        core.report(errors.FIXED_STOP_START_TOO_LARGE, block.source, axis.number, per_mille, axis=index)
+        core.report(errors.FIXED_STOP_START_TOO_LARGE, block.source, axis.number, per_mille, 1000, axis=index)
         return True
     if not has_criterion(axis.params):
         core.report(position_errors.NO_DETECTION_CRITERION, block.source, axis.number, axis=index)

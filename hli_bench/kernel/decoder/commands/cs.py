@@ -31,7 +31,7 @@ def run(context: Context, memory: Variables, scanner: Scanner) -> Steps:
         where.pop(everything=scanner.match(_ALL) is not None)
         return
     if where.depth == MAX_FRAMES:
-        raise CncStop(errors.CS_STACK, scanner.block.source)
+        raise CncStop(errors.CS_STACK, scanner.block.source, MAX_FRAMES)
     where.push(frame(_values(memory, scanner)))
 
 

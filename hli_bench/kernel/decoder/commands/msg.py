@@ -53,7 +53,7 @@ def _fill(scanner: Scanner, template: str, values: list[Value], at: int) -> str:
     rest = list(values)
     wanted = sum(found.group(2) != "%" for found in _CONVERSION.finditer(template))
     if wanted != len(values):
-        raise CncStop(errors.MESSAGE_VALUES, scanner.block.source)
+        raise CncStop(errors.MESSAGE_VALUES, scanner.block.source, wanted)
 
     def put(found: re.Match[str]) -> str:
         flags, kind = found.groups()

@@ -293,6 +293,9 @@ class Drive:
             objects.MODE_DISPLAY: lambda: self._mode,
             objects.RATED_TORQUE: lambda: round(float(self._row["rated_torque"]) * 1000.0),
         }
+        modes = objects.SUPPORTED_MODES
+        if values.has(*modes) and values.description[modes].default is None:
+            computed[modes] = lambda: objects.ABSENT[modes]
         for address, source in computed.items():
             if values.has(*address):
                 values.on_read(*address, source)
@@ -438,7 +441,7 @@ class Drive:
         self._probe_function[0] = resolve_source(self._probe_word, self._sources)
 
     def _option(self, address: ObjectAddress) -> int:
-        """Return the present value of an object; one that the dictionary lacks, or leaves open, acts by the profile."""
+        """Return the present value of an object; one that the dictionary lacks acts by the profile."""
         return number_of(self.device.values, address)
 
 

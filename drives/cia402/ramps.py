@@ -21,12 +21,8 @@ _OBJECTS: Final = {SLOW_DOWN: objects.PROFILE_DECELERATION, QUICK: objects.QUICK
 
 
 def number_of(values: ObjectValues, address: ObjectAddress) -> int:
-    """Return the present value of an object; one that the dictionary lacks, or leaves open, acts by the profile."""
-    missing = objects.ABSENT.get(address, 0)
-    if not values.has(*address):
-        return missing
-    left_open = address == objects.SUPPORTED_MODES and values.description[address].default is None
-    return missing if left_open else values.number(*address)
+    """Return the present value of an object; one that the dictionary lacks acts by the profile."""
+    return values.number(*address) if values.has(*address) else objects.ABSENT.get(address, 0)
 
 
 class Ramps:

@@ -409,6 +409,7 @@ def test_a_drive_without_what_is_optional_runs(eds: Any, row: Any, tmp_path: Any
     assert drive.state is State.OPERATION_ENABLED
     assert (row["torque_limit_permille"], row["following_window"]) == (3000, 0xFFFFFFFF)
     drive.device.values.download(0x6060, 0, b"\x08")
+    assert drive.device.values.number(0x6502) == 0x80, "left open in the file"
     drive.fault(0x7305)
     drive.exchange(0x0F, 5, 0, Ns(0))
     drive.exchange(0x0F, 5, 0, Ns(1))

@@ -193,6 +193,32 @@ def test_values_that_no_bench_can_take(command: Command, settings: list[str], me
     assert message in said
 
 
+def test_what_a_run_does_not_use_is_named_in_one_remark(command: Command, tmp_path: Path) -> None:
+    path = program(tmp_path, "N10 G01 X10 F1000", "N20 M30")
+    unused = ("axis.X.kenngr.swe_toleranz=7", "axis.Y.getriebe[0].slope_profil.a_feedh=9")
+    options = [word for one in (*unused, "axis.X.kenngr.vb_messen=9000") for word in ("--set", one)]
+    status, _, said = command("run", path, *options)
+    assert status == 0
+    assert [line for line in said.splitlines() if line.startswith("note: given")] == [
+        (
+            "note: given, and nothing in this bench uses it: axis.X.kenngr.swe_toleranz (--set), "
+            "axis.Y.getriebe[0].slope_profil.a_feedh (--set)"
+        )
+    ]
+
+
+@pytest.mark.parametrize("words", [("run",), ("machine", "check", "demo")])
+def test_a_drive_type_that_is_not_built_ends_before_the_run(
+    command: Command, tmp_path: Path, words: tuple[str, ...]
+) -> None:
+    given = [program(tmp_path, "N10 G100 X10 F1000", "N20 M30")] if words == ("run",) else []
+    status, out, said = command(*words, *given, "--set", "axis.X.kenngr.antr_typ=2")
+    assert (status, out) == (2, "")
+    assert said == (
+        "NotEmulated: --set: axis.X: P-AXIS-00020: kenngr.antr_typ = 2 (SERCOS) is not emulated\n"
+    )
+
+
 def test_an_axis_that_does_not_measure_stops_the_program(command: Command, tmp_path: Path) -> None:
     path = program(tmp_path, "N10 #MEAS MODE[1]", "N20 G100 B10 F100", "N30 M30")
     status, out, said = command("run", path, "--set", "axis.B.kenngr.messachse=0")

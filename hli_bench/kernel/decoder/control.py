@@ -1,13 +1,16 @@
 """Statements that steer the program: $IF, $WHILE, $FOR, $BREAK, $CONTINUE."""
 
 import re
+from collections.abc import Generator
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, Final
 
-from hli_bench.kernel.decoder.context import Context, Steps
+from hli_bench.kernel.blocks import Idle, MachineState
+from hli_bench.kernel.decoder.context import Context, Item, Steps
 from hli_bench.kernel.decoder.expressions import evaluate, is_true
 from hli_bench.kernel.decoder.faults import CncStop
-from hli_bench.kernel.decoder.text import BlockText, Lines, Scanner, read_block
+from hli_bench.kernel.decoder.text import BlockText, Lines, Scanner, comment, cost, read_block
 from hli_bench.kernel.decoder.variables import Slot, Variables, needs_flush
 from hli_bench.manual.dialect import BUILT, STATEMENTS, missing
 from hli_bench.manual.errors import decoder as errors
@@ -15,6 +18,8 @@ from hli_bench.manual.errors import decoder as errors
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+Skipped = Generator[Item, MachineState | None, tuple[str, Scanner]]
+"""What reading over blocks yields, and the word it comes to."""
 _WORD = re.compile(r"\$\s*([A-Z]+)", re.IGNORECASE)
 _JUMP = re.compile(r"\$\s*GOTO\b", re.IGNORECASE)
 _OPENING: Final = frozenset(("IF", "WHILE", "FOR", "DO", "REPEAT", "SWITCH"))
@@ -40,12 +45,13 @@ class _Open:
 class Control:
     """The open control blocks of a program and the reading over what is not executed."""
 
-    __slots__ = ("_context", "_lines", "_memory", "_open")
+    __slots__ = ("_context", "_lines", "_memory", "_open", "_without_motion")
 
-    def __init__(self, context: Context, memory: Variables, lines: Lines) -> None:
+    def __init__(self, context: Context, memory: Variables, lines: Lines, without_motion: int) -> None:
         self._context = context
         self._memory = memory
         self._lines = lines
+        self._without_motion = without_motion
         self._open: list[_Open] = []
 
     def check_closed(self) -> None:
@@ -101,7 +107,7 @@ class Control:
         if not self._open:
             raise scanner.error(f"expected ${word} inside a loop", scanner.start)
         loop = self._open[-1]
-        _, end = self._skip(loop, branches=False, depth=inside)
+        _, end = yield from self._skip(loop, branches=False, depth=inside)
         if word == "CONTINUE":
             yield from self._again_while(end) if loop.word == "WHILE" else self._again_for()
         else:
@@ -116,7 +122,7 @@ class Control:
     def _read_over(self, opened: _Open, *, branches: bool) -> Steps:
         """Read on to the branch that is executed, or to $ENDIF."""
         while True:
-            word, scanner = self._skip(opened, branches=branches)
+            word, scanner = yield from self._skip(opened, branches=branches)
             if word == "ENDIF":
                 self._open.pop()
             elif word == "ELSEIF":
@@ -130,7 +136,7 @@ class Control:
         loop = _Open("WHILE", scanner.block, self._lines.mark(), scanner.pos)
         self._begin(loop)
         if not is_true(evaluate(scanner, self._memory, condition=True)):
-            self._skip(loop, branches=False)
+            yield from self._skip(loop, branches=False)
             self._leave()
         yield from ()
 
@@ -161,7 +167,7 @@ class Control:
         loop = _Open("FOR", scanner.block, self._lines.mark(), 0, counter, last, step)
         self._begin(loop)
         if not self._within(loop):
-            self._skip(loop, branches=False)
+            yield from self._skip(loop, branches=False)
             self._leave()
         yield from ()
 
@@ -197,13 +203,19 @@ class Control:
         if not any(opened.word in ("WHILE", "FOR") for opened in self._open):
             self._lines.forget()
 
-    def _skip(self, opened: _Open, *, branches: bool, depth: int = 0) -> tuple[str, Scanner]:
+    def _skip(self, opened: _Open, *, branches: bool, depth: int = 0) -> Skipped:
         """Read over blocks up to the end of the control block (or its next branch); return its word.
 
         `depth` counts the control blocks inside it that are left as well.
         """
+        blocks, name = 0, self._context.name
         while (raw := self._lines.next()) is not None:
-            scanner = Scanner(read_block(self._lines, raw, self._context.name))
+            scanner = Scanner(read_block(self._lines, raw, name))
+            for line in chain((raw,), comment(self._lines, name)):
+                blocks += cost(line)
+                if blocks >= self._without_motion:
+                    blocks = 0
+                    yield Idle()
             word = _statement(scanner)
             if word in _OPENING and not _JUMP.search(scanner.text):
                 depth += 1

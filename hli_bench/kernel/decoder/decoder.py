@@ -11,7 +11,7 @@ from hli_bench.kernel.decoder.configuration import DecoderAxis, DecoderDefaults
 from hli_bench.kernel.decoder.context import LARGEST_POSITION, Context, Item, Steps
 from hli_bench.kernel.decoder.control import Control
 from hli_bench.kernel.decoder.faults import CncStop, cnc_error
-from hli_bench.kernel.decoder.text import MAX_LINE, Lines, Scanner, read_block, short
+from hli_bench.kernel.decoder.text import MAX_LINE, Lines, Scanner, comment, cost, read_block, short
 from hli_bench.kernel.decoder.variables import Variables, needs_flush
 from hli_bench.kernel.decoder.words import WordReader
 from hli_bench.manual.dialect import COMMANDS as DIALECT
@@ -64,7 +64,7 @@ class Decoder:
         self._context = Context(name, axes, defaults)
         self._lines = Lines(program)
         self._memory = Variables(self._context)
-        self._control = Control(self._context, self._memory, self._lines)
+        self._control = Control(self._context, self._memory, self._lines, without_motion)
         self._words = WordReader(self._context, self._memory)
         self._without_motion = without_motion
         self._named = False
@@ -107,8 +107,8 @@ class Decoder:
                 blocks = 0
                 yield item
                 continue
-            blocks += 1
-            if blocks == without_motion:
+            blocks += cost(raw)
+            if blocks >= without_motion:
                 blocks = 0
                 yield Idle()
             if item is None:
@@ -116,6 +116,11 @@ class Decoder:
             yield from self._block(raw)
             if context.ended:
                 return
+            for commented in comment(self._lines, context.name):
+                blocks += cost(commented)
+                if blocks >= without_motion:
+                    blocks = 0
+                    yield Idle()
         self._control.check_closed()
         raise CncStop(errors.PROGRAM_END_MISSING, Source("", self._lines.number))
 

@@ -1,7 +1,7 @@
 """Lines of a program put together to blocks: comments blanked, continued lines joined, places kept."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -34,7 +34,7 @@ def short(word: str) -> str:
 class Lines:
     """Hands out the lines of a program one by one; remembers them only while a loop may return to them."""
 
-    __slots__ = ("_base", "_buffer", "_cursor", "_lines", "number")
+    __slots__ = ("_base", "_buffer", "_cursor", "_lines", "comment", "number")
 
     def __init__(self, lines: Iterable[str]) -> None:
         self._lines = iter(lines)
@@ -42,6 +42,8 @@ class Lines:
         self._base = 0
         self._cursor = 0
         self.number = 0
+        self.comment = 0
+        """Line of a #COMMENT BEGIN that is open: what follows is to be taken by `comment`."""
 
     def next(self) -> str | None:
         """Return the next line or None at the end; `number` is its number, from 1."""
@@ -182,7 +184,7 @@ def read_block(lines: Lines, raw: str, file: str) -> BlockText:
     source = Source(number.group(1) if number else "", first)
     start = number.end() if number else 0
     if _COMMENT_BEGIN.match(cleaned.text, start):
-        _skip_comment(lines, file, first)
+        lines.comment = first
         return BlockText(file, source, "", ((0, first, 0),))
     text = cleaned.text[start:]
     if not (cleaned.continued or cleaned.brackets):
@@ -270,8 +272,17 @@ def _comment_end(text: str, pos: int) -> int:
     return len(text) if depth else pos
 
 
-def _skip_comment(lines: Lines, file: str, begin: int) -> None:
-    while (raw := lines.next()) is not None:
+def comment(lines: Lines, file: str) -> Iterator[str]:
+    """Yield the lines of an open #COMMENT BEGIN up to its end; of none nothing."""
+    begin = lines.comment
+    while begin and (raw := lines.next()) is not None:
         if _COMMENT_END.match(raw):
-            return
-    raise InputError("expected #COMMENT END for this #COMMENT BEGIN", file, begin, 1)
+            begin = lines.comment = 0
+        yield raw
+    if begin:
+        raise InputError("expected #COMMENT END for this #COMMENT BEGIN", file, begin, 1)
+
+
+def cost(raw: str) -> int:
+    """Return what a line counts among the blocks without motion: long ones for several."""
+    return 1 + (len(raw) >> 7)

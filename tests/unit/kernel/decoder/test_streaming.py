@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 from itertools import islice
 
+import pytest
+
 from hli_bench.base.ids import AxisIndex
-from hli_bench.kernel.blocks import Flush, MachineState
+from hli_bench.kernel.blocks import Flush, Idle, MachineState, ProgramEnd
 from hli_bench.kernel.decoder import Decoder, DecoderAxis, DecoderDefaults
 
 AXES = [DecoderAxis(AxisIndex(0), "X", 1, "T", True)]
@@ -46,3 +48,25 @@ def test_lines_are_kept_for_a_loop_only() -> None:
     assert decoder._lines._buffer is not None
     assert [next(blocks).source.line for _ in range(4)] == [2, 2, 4, 5]
     assert decoder._lines._buffer is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "#COMMENT BEGIN\n" + "X1\n" * 1000 + "#COMMENT END\n",
+        "$IF 0\n" + "X1\n" * 1000 + "$ENDIF\n",
+        "$WHILE 0\n" + "X1\n" * 1000 + "$ENDWHILE\n",
+        "$IF 0\n#COMMENT BEGIN\n" + "X1\n" * 1000 + "#COMMENT END\n$ENDIF\n",
+        "P1=1\n" * 1000,
+        "(comment)\n" * 1000,
+        ("(" + "c" * 3900 + ")\n") * 40,
+    ],
+)
+def test_what_gives_no_motion_lets_cycles_pass(text: str) -> None:
+    """Whatever is read over: no cycle has to take more than so many lines, long ones count for several."""
+    blocks = Decoder(
+        (text + "M30\n").splitlines(), "test.nc", AXES, DecoderDefaults(), without_motion=50
+    ).blocks()
+    items = list(blocks)
+    assert sum(isinstance(item, Idle) for item in items) >= 20
+    assert isinstance(items[-1], ProgramEnd)

@@ -3,6 +3,7 @@
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from hli_bench import Bench
@@ -88,7 +89,10 @@ def test_axis_returns_to_the_measured_position(make, recorder):
     assert recorder.column("command", Z)[-1] == pytest.approx(measured * 1e4, abs=1e-6)
     bench.advance(300)
     assert bench.position_mm("Z") == pytest.approx(measured, abs=2e-3)
-    assert recorder.column("command", Z).max() > (measured + 1.9) * 1e4, "it had pushed 2 mm ahead"
+    command = recorder.column("command", Z)
+    assert command.max() > (measured + 1.9) * 1e4, "it had pushed 2 mm ahead"
+    (found,) = recorder.cycle_of(MeasuredValue)
+    assert np.abs(np.diff(command[found - 5 :])).max() <= 170.0, "no jump: 1000 mm/min is 167 in a cycle"
     assert abs(recorder.column("lag", Z)[-1]) < 30.0
 
 
@@ -191,11 +195,12 @@ ARMING = [
     pytest.param({"start_distance_per_mille": 400}, 40_000, id="per-mille"),
     pytest.param({"start_distance": 30_000, "start_distance_per_mille": 400}, 30_000, id="smaller-absolute"),
     pytest.param({"start_distance": 50_000, "start_distance_per_mille": 400}, 40_000, id="smaller-share"),
+    pytest.param({"start_distance": 50_000, "start_distance_per_mille": 0}, 0, id="smaller-share-nothing"),
     pytest.param({}, 0, id="at-once"),
 ]
 
 
-@pytest.mark.req("M-148", "M-149", "M-151")
+@pytest.mark.req("M-148", "M-149", "M-151", "M-226")
 @pytest.mark.parametrize(("given", "armed_at"), ARMING)
 def test_detection_is_armed_behind_its_way(make, recorder, given, armed_at):
     """Any lag is a stop here: so the run ends as soon as detection is armed."""

@@ -80,7 +80,7 @@ def phases(recorder, number: int) -> list[float]:
 )
 def test_three_phases_with_zero_pulse(make, recorder):
     """To the cam fast, off it, onto it slowly, then the zero pulse: the axis knows where it is to one increment."""
-    bench = make(axis("X", 0.0), recorder=recorder)
+    bench = make(axis("X", 3.21), recorder=recorder)
     result = home(bench)
     bench.advance(SETTLE)
 
@@ -97,7 +97,7 @@ def test_three_phases_with_zero_pulse(make, recorder):
 @pytest.mark.parametrize("slow_um", [2_000, 5_000, 20_000])
 def test_axis_stands_the_braking_distance_behind_its_reference(make, recorder, slow_um):
     """It goes on while the latch travels to the CNC, then brakes with P-AXIS-00285."""
-    bench = make(axis("X", 0.0, **{"getriebe[0].vb_reflow": slow_um}), recorder=recorder)
+    bench = make(axis("X", 3.21, **{"getriebe[0].vb_reflow": slow_um}), recorder=recorder)
     home(bench)
     bench.advance(SETTLE)
     way = -55.0 - bench.position_mm("X")
@@ -180,7 +180,7 @@ def test_way_off_the_cam_is_fast_or_slow(make, recorder, fast, speed):
 
 @pytest.mark.req("H-043", "H-159", "H-202")
 def test_positive_homing_direction(make, recorder):
-    settings = axis("X", 0.0, **{"kenngr.ref_richt": 1, "getriebe[0].pos_refpkt": 550_000})
+    settings = axis("X", -3.21, **{"kenngr.ref_richt": 1, "getriebe[0].pos_refpkt": 550_000})
     settings |= {"plant.cam.X.from_mm": 50.0, "plant.cam.X.to_mm": 200.0}
     bench = make(settings, recorder=recorder)
     result = home(bench)
@@ -195,7 +195,7 @@ def test_positive_homing_direction(make, recorder):
 @pytest.mark.req("H-031", "H-155")
 def test_normally_closed_cam_is_told_by_its_level(make, recorder):
     """P-AXIS-00038 = 0: the signal is there off the cam. The switch closes everywhere but below -50."""
-    settings = axis("X", 0.0, **{"lr_hw[0].cam_level": 0})
+    settings = axis("X", 3.21, **{"lr_hw[0].cam_level": 0})
     settings |= {"plant.cam.X.from_mm": CAM_EDGE_MM, "plant.cam.X.to_mm": 400.0}
     bench = make(settings, recorder=recorder)
     result = home(bench)
@@ -281,14 +281,16 @@ def test_homing_without_its_own_acceleration_takes_the_smaller_of_rapid_traverse
     assert np.abs(rate).max() < 620.0
 
 
-@pytest.mark.req("H-002", "H-004", "H-008")
-def test_incremental_axis_measures_the_truth_after_homing(make):
+@pytest.mark.req("H-001", "H-002", "H-004", "H-008", "M-006", "M-129", "M-181", "M-202", "M-205")
+@pytest.mark.parametrize("source", ["PLC_TIMESTAMP", "DRIVE"])
+def test_incremental_axis_measures_the_truth_after_homing(make, source):
     """Before homing its zero is where it was switched on; after it the face is where it is."""
     settings = axis("Z", 30.0) | {
         "plant.probe.Z.face_mm": 12.3456,
         "plant.probe.Z.material": "below",
         "plant.cam.Z.from_mm": 60.0,
         "plant.cam.Z.to_mm": 200.0,
+        "axis.Z.kenngr.measure.signal": source,
         "axis.Z.kenngr.ref_richt": 1,
         "axis.Z.getriebe[0].pos_refpkt": 650_000,
     }
@@ -402,12 +404,23 @@ def test_longest_way_of_a_rotary_axis(make, errors, longest, degrees):
 @pytest.mark.req("H-016", "H-137")
 def test_late_activation_takes_the_next_zero_pulse(make):
     """P-AXIS-00494: 6 mm behind the cam the pulse at 5 mm is over, the next is a turn further."""
-    settings = axis("X", 0.0, **{"kenngr.shift_offset_zero_pulse_activation": 60_000})
+    settings = axis("X", 3.21, **{"kenngr.shift_offset_zero_pulse_activation": 60_000})
     bench = make(settings)
     assert home(bench).completed
     bench.advance(SETTLE)
 
     assert bench.position_mm("X") - truth_mm(bench, X) == pytest.approx(PITCH_MM, abs=TO_THE_INCREMENT)
+
+
+@pytest.mark.req("H-049", "H-137")
+@pytest.mark.parametrize("number", [1, 2])
+def test_zero_pulse_is_latched_by_the_probing_input_of_the_axis(make, recorder, number):
+    bench = make(axis("X", 3.21, **{"kenngr.measure.input": number}), recorder=recorder)
+    assert home(bench).completed
+    bench.advance(SETTLE)
+
+    assert set(recorder.column("probe_function", X)) == {0, 0x15 << 8 * (number - 1)}
+    assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=TO_THE_INCREMENT)
 
 
 @pytest.mark.req("H-016")
@@ -484,7 +497,7 @@ def test_aborted_homing_brakes_and_leaves_no_reference(make):
 def test_rotary_axis_homes_as_a_linear_one(make):
     """36 degrees a turn, zero pulse half a turn behind the cam's edge."""
     settings = {
-        "axis.A.start_mm": 0.0,
+        "axis.A.start_mm": 7.0,
         "axis.A.kenngr.abs_pos_gueltig": 0,
         "plant.cam.A.from_mm": -90.0,
         "plant.cam.A.to_mm": -45.0,

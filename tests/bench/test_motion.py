@@ -322,9 +322,12 @@ def test_history_holds_the_positions_of_their_instants(make, recorder):
 def test_software_limits_act_on_a_homed_axis_only(make, errors, start, target, number):
     limits = {"axis.X.kenngr.swe_pos": 800_000, "axis.X.kenngr.swe_neg": -5_200_000, "axis.X.start_mm": start}
     program = f"%p\nN10 G01 X{target} F6000\nN20 M30\n"
-    absolute = make(limits).run(program)
+    bench = make(limits)
+    absolute = bench.run(program)
+    bench.advance(100)
     incremental = make(limits | {"axis.X.kenngr.abs_pos_gueltig": 0}).run(program)
 
+    assert bench.position_mm("X") == pytest.approx(start, abs=1e-3), "not one step"
     assert errors(absolute) == [(number, "X", "N10")]
     assert incremental.completed
 

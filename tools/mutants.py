@@ -9,6 +9,7 @@ marked test is no good.
 
 import argparse
 import ast
+import compileall
 import os
 import random
 import shutil
@@ -22,6 +23,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from py_compile import PycInvalidationMode
 from queue import SimpleQueue
 from time import monotonic
 from typing import TypeGuard
@@ -56,6 +58,8 @@ NEEDED = (
 PATIENCE = 5.0
 """How many times as long as without a mutant the tests may take; then it is killed: it never ends."""
 LEAST_S = 60.0
+WITHOUT = ("-p", "no:hypothesispytest", "-p", "no:xdist")
+"""Plugins that cost more than the tests of a line."""
 OTHER_WAY = {
     ast.Lt: ">=",
     ast.GtE: "<",
@@ -240,6 +244,8 @@ class Tree:
             elif source.is_file():
                 shutil.copy(source, folder / name)
         (folder / "mutants_select.py").write_text(SELECT)
+        # By hash: a mutant and what it came from may be of the same second and size.
+        compileall.compile_dir(folder, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
 
     def passes(self, line: str, files: Sequence[str], timeout_s: float = 1200.0) -> bool:
         """Run the tests marked with a line and tell whether they pass; no test, or no end in time, is no pass."""

@@ -77,6 +77,8 @@ def phases(recorder, number: int) -> list[float]:
     "H-046",
     "H-048",
     "H-049",
+    "H-159",
+    "H-202",
 )
 def test_three_phases_with_zero_pulse(make, recorder):
     """To the cam fast, off it, onto it slowly, then the zero pulse: the axis knows where it is to one increment."""
@@ -90,6 +92,7 @@ def test_three_phases_with_zero_pulse(make, recorder):
     assert bench.position_mm("X") == pytest.approx(truth_mm(bench, X), abs=TO_THE_INCREMENT)
     done = bench.kernel.image.layout.element("ax/1/lr_state/homing_done_r").id
     assert bench.kernel.image.get(done)
+    assert bench.kernel.core.referenced[X]
     assert recorder.column("probe_function", X)[-1] == 0, "the latch is switched off again"
 
 

@@ -164,6 +164,7 @@ def test_way_behind_which_detection_is_armed(make, recorder, given, armed_at):
     [
         ({OWN + "max_delta_position_window": -1, COMMON + "max_delta_position_window": 300}, 300),
         ({OWN + "max_delta_position_window": 100, COMMON + "max_delta_position_window": 300}, 100),
+        ({OWN + "max_delta_position_window": 0, COMMON + "max_delta_position_window": 300}, 0),
     ],
 )
 def test_way_within_the_time_that_means_a_stop(make, recorder, given, window):

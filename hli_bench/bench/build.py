@@ -3,12 +3,16 @@
 from typing import Any
 
 from hli_bench.base.errors import InputError
-from hli_bench.bench.config import MachineConfig
-from hli_bench.bench.drive_models import drive_model
+from hli_bench.bench.config import AxisConfig, MachineConfig
+from hli_bench.bench.drive_models import drive_model, eds_of
 from hli_bench.kernel.cycle import Kernel
 from hli_bench.kernel.setup import AxisSetup, KernelSetup
 from hli_bench.laws.rows import Rows
+from hli_bench.manual.axis.fallbacks import effective_signal
+from hli_bench.manual.axis.words import ProbingSignal
 from hli_bench.plant import build as plant
+from hli_bench.protocols.canopen.eds import load
+from hli_bench.protocols.canopen.telegram import ALL_BASES, MOTION, PROBE, mapped
 from hli_bench.runtime.machine_side import DriveNode, Forced, MachineSide
 from hli_bench.terminals.terminal import Terminal, type_of
 from hli_bench.wire.images import TerminalLayout
@@ -24,6 +28,7 @@ def kernel(config: MachineConfig) -> Kernel:
             name=axis.name,
             kind=axis.kind,
             params=axis.params,
+            telegrams=_telegrams(axis),
         )
         for axis in config.axes
     ]
@@ -32,6 +37,26 @@ def kernel(config: MachineConfig) -> Kernel:
             axes=axes, channel=config.channel, cycle_ns=config.cycle_ns, dc_epoch_ns=config.dc_epoch_ns
         )
     )
+
+
+def _telegrams(axis: AxisConfig) -> frozenset[int]:
+    """Return what an axis' drive sends, as its EDS says. Raises InputError when that is not enough for the axis."""
+    key = f"axis.{axis.name}"
+    try:
+        eds = eds_of(drive_model(axis.drive))
+        found = ALL_BASES if eds is None else mapped(load(eds))
+    except InputError as error:
+        raise InputError(f"{key}.drive: {error}") from error
+    if MOTION not in found:
+        raise InputError(
+            f"{key}.drive: {eds} does not map status word and actual position to its first telegram"
+        )
+    if effective_signal(axis.params.kenngr) is ProbingSignal.DRIVE and PROBE not in found:
+        raise InputError(
+            f"{key}.kenngr.measure.signal: DRIVE is not possible, {eds} does not map touch probe status and latch "
+            "(60B9, 60BA) to its second telegram"
+        )
+    return found
 
 
 def machine_side(config: MachineConfig, axis_rows: Rows) -> MachineSide:

@@ -7,6 +7,7 @@ from typing import Literal
 from hli_bench.base.ids import AxisIndex, AxisNumber, NodeId
 from hli_bench.manual.axis import AxisParams
 from hli_bench.manual.channel import ChannelParams
+from hli_bench.protocols.canopen.telegram import ALL_BASES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,6 +20,8 @@ class AxisSetup:
     name: str
     kind: Literal["T", "R", "S"]
     params: AxisParams
+    telegrams: frozenset[int] = ALL_BASES
+    """Base COB-IDs of the standard telegrams that its drive sends."""
 
     @property
     def unit(self) -> str:

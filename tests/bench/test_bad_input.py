@@ -155,7 +155,7 @@ def test_a_drive_model_is_the_same_to_run_and_to_machine_check(
 ) -> None:
     eds = data_file("eds", "servo402.eds").read_text(encoding="latin-1")
     (tmp_path / "poor.eds").write_text(
-        eds.replace("[60B9]", "[2FFF]").replace("=0x60B9", "=0x2FFF"), "latin-1"
+        eds.replace("[6041]", "[2FFF]").replace("=0x6041\n", "=0x2FFF\n"), "latin-1"
     )
     (tmp_path / "no_drive.py").write_text("")
     (tmp_path / "poor_drive.py").write_text(
@@ -169,7 +169,7 @@ def test_a_drive_model_is_the_same_to_run_and_to_machine_check(
         status, _, said = command(*words, "--set", "axis.Z.drive=no_drive")
         assert (status, said) == (2, "axis.Z.drive: 'no_drive' is no drive model, it has no create()\n")
         status, _, said = command(*words, "--set", "axis.Z.drive=poor_drive")
-        assert (status, said.endswith("poor.eds: a CiA 402 drive needs the objects 60B9:00\n")) == (2, True)
+        assert (status, said.endswith("poor.eds: a CiA 402 drive needs the objects 6041:00\n")) == (2, True)
         status, _, said = command(*words, "--set", "axis.Z.drive=failing_drive")
         place = f"{tmp_path / 'failing_drive.py'}:2"
         assert (status, said) == (2, f"axis.Z.drive: {place}: ZeroDivisionError: division by zero\n")

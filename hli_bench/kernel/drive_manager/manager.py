@@ -37,7 +37,7 @@ class DriveManager:
         nodes = [axis.node for axis in core.setup.axes]
         self._core = core
         self._monitoring = monitoring
-        self._actual = ActualTelegrams(nodes, core.rows.axis)
+        self._actual = ActualTelegrams(core.setup.axes, core.rows.axis)
         self._commands = CommandTelegrams(nodes, core.rows.axis)
         self._supervision = Supervision(core)
         self._starting: dict[AxisIndex, Sequence[start_up.Drive]] = {}

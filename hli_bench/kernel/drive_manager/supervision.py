@@ -161,7 +161,8 @@ class Supervision:
         core, number = self._core, self._core.axis(axis).number
         status = int(core.row(axis)["statusword"])
         if not left or any(status & mask == value for mask, value in _FAULTS):
-            core.report(errors.CANOPEN_DRIVE_ERROR, source, number, f"{code:#06x}", axis=axis)
+            told = self._common(axis), status, source.name, f"{code:#06x}"
+            core.report(errors.CANOPEN_DRIVE_ERROR, source, number, *told, axis=axis)
             return left
         given = self._common(axis), f"{status:#06x}", source.name
         core.report(

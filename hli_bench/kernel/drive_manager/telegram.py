@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from hli_bench.base.ids import NodeId
+from hli_bench.kernel.setup import AxisSetup
 from hli_bench.laws.rows import Rows
 from hli_bench.protocols.canopen.telegram import RPDOS, TPDOS, Telegram
 from hli_bench.wire.can import CanFrame
@@ -47,13 +48,14 @@ class ActualTelegrams:
 
     __slots__ = ("_takers", "cob_ids", "missing")
 
-    def __init__(self, nodes: Sequence[NodeId], axis: Rows) -> None:
-        """`nodes` in the order of the rows."""
+    def __init__(self, axes: Sequence[AxisSetup], axis: Rows) -> None:
+        """`axes` in the order of the rows."""
         self._takers = {
-            telegram.base + node: (telegram.layout.size, telegram.layout.unpack, columns, index)
+            telegram.base + one.node: (telegram.layout.size, telegram.layout.unpack, columns, one.index)
             for telegram in TPDOS
             for columns in [_columns(axis, telegram)]
-            for index, node in enumerate(nodes)
+            for one in axes
+            if telegram.base in one.telegrams
         }
         self.cob_ids = frozenset(self._takers)
         self.missing: frozenset[int] = frozenset()

@@ -27,6 +27,7 @@ from hli_bench.manual.errors import ErrorSheet
 from hli_bench.manual.errors import path_interpolator as errors
 from hli_bench.manual.errors import path_preparation as preparation_errors
 from hli_bench.manual.errors import position_controller as position_errors
+from hli_bench.protocols.canopen.telegram import PROBE
 
 FEED_FROM_AXIS: Final = 2
 MAIN_AXES_ONLY: Final = 4
@@ -96,6 +97,8 @@ def _change_refused(axis: AxisSetup, before: Probe, after: Probe) -> ErrorSheet 
     inputs = permitted_inputs(after.signal, drive_type)
     if inputs is not None and after.input not in inputs:
         return errors.MEAS_INPUT_INVALID
+    if after.signal is ProbingSignal.DRIVE and PROBE not in axis.telegrams:
+        return position_errors.PROBE_COMMAND_FAILED
     if after.signal is ProbingSignal.DRIVE and drive_type is DriveType.SERCOS:
         if after.input != before.input:
             return position_errors.INPUT_NOT_CHANGEABLE

@@ -11,6 +11,7 @@ from struct import Struct
 from typing import Final, NamedTuple
 
 from hli_bench.protocols.canopen.cia402_objects import LATCHES
+from hli_bench.protocols.canopen.eds import ObjectDictionary
 
 BITS: Final = {"H": 16, "h": 16, "i": 32, "I": 32}
 
@@ -60,6 +61,7 @@ def tpdos(probing_input: int = 0) -> tuple[Telegram, ...]:
 
 
 TPDOS: Final = tpdos()
+TPDO_MAPPING: Final = 0x1A00
 
 
 def changed(probing_input: int) -> Sequence[tuple[int, Telegram]]:
@@ -68,3 +70,27 @@ def changed(probing_input: int) -> Sequence[tuple[int, Telegram]]:
     return [
         (place, other) for place, (default, other) in enumerate(pairs) if other.mapping != default.mapping
     ]
+
+
+ALL_BASES: Final = frozenset(telegram.base for telegram in TPDOS)
+MOTION: Final = TPDOS[0].base
+"""Status word and actual position: without it nothing moves."""
+PROBE: Final = TPDOS[1].base
+"""Touch probe status and latch."""
+
+
+def mapped(description: ObjectDictionary) -> frozenset[int]:
+    """Return the base COB-IDs of the standard actual value telegrams that a drive with this dictionary sends."""
+    found = set()
+    for place, telegram in enumerate(TPDOS):
+        mapping = TPDO_MAPPING + place
+        given = [_default(description, mapping, number) for number in range(1, len(telegram.mapping) + 1)]
+        counted = _default(description, mapping, 0) == len(telegram.mapping)
+        if counted and tuple(given) == telegram.mapping:
+            found.add(telegram.base)
+    return frozenset(found)
+
+
+def _default(description: ObjectDictionary, index: int, subindex: int) -> object:
+    address = (index, subindex)
+    return description[address].default if address in description else None

@@ -38,10 +38,15 @@ def set_digest() -> str:
     return hashlib.sha256(b"".join(path.read_bytes() for path in places)).hexdigest()[:12]
 
 
+def _places(tree: Path) -> str:
+    """Return where the packages of a tree and the tools lie, as PYTHONPATH takes it."""
+    return os.pathsep.join(map(str, (tree, tree / "drives", ROOT / "tools")))
+
+
 def record(tree: Path, folder: Path, names: Sequence[str], jobs: int) -> None:
     """Perform the named runs with the packages of a tree, in so many processes, into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    environment = {**os.environ, "PYTHONPATH": f"{tree}{os.pathsep}{ROOT / 'tools'}", "PYTHONHASHSEED": "0"}
+    environment = {**os.environ, "PYTHONPATH": _places(tree), "PYTHONHASHSEED": "0"}
     parts = [names[number::jobs] for number in range(jobs) if names[number::jobs]]
     words = [sys.executable, "-P", str(Path(__file__).resolve()), "--record", str(folder), "--only"]
     workers = [subprocess.Popen([*words, *part], env=environment, cwd=tree) for part in parts]

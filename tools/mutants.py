@@ -261,7 +261,8 @@ class Tree:
             "mutants_select",
             *files,
         ]
-        environment = {**os.environ, "MUTANTS_LINE": line, "PYTHONPATH": str(self.folder)}
+        places = f"{self.folder}{os.pathsep}{self.folder / 'drives'}"
+        environment = {**os.environ, "MUTANTS_LINE": line, "PYTHONPATH": places}
         environment |= {"PYTHONDONTWRITEBYTECODE": "1"}
         quiet = subprocess.DEVNULL
         run = subprocess.Popen(

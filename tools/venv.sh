@@ -40,4 +40,4 @@ echo "installing what $lock lists into .venv ..." >&2
 # The build tools stand in the lock; without isolation pip does not fetch newer ones.
 "${pip[@]}" install --no-build-isolation --no-deps --editable .
 # Where PYTHONDONTWRITEBYTECODE is set, every command would compile the package anew: 0.2 s of its start.
-.venv/bin/python -m compileall -q hli_bench drives
+.venv/bin/python -m compileall -q hli_bench drives/hli_bench_drives

@@ -8,6 +8,7 @@ import sys
 from functools import lru_cache
 from pathlib import Path
 from types import CodeType, ModuleType
+from typing import Final
 
 from hli_bench.base import paths
 from hli_bench.base.errors import InputError
@@ -36,6 +37,18 @@ def supplied(folder: str) -> list[str]:
     """Return the names of the files that come with the project in a folder (`programs`, `plc_scripts`)."""
     places = (_PACKAGE.parent / folder, _PACKAGE / "_data" / folder)
     return sorted(path.name for place in places if place.is_dir() for path in place.iterdir())
+
+
+SUPPLIED: Final = "hli_bench_drives"
+"""The package of the emulated drives, which the bench knows by name only."""
+
+
+def is_module(name: str) -> bool:
+    """Tell whether there is a module of that dotted path; the packages above it are imported for it."""
+    try:
+        return importlib.util.find_spec(name) is not None
+    except (ImportError, ValueError):
+        return False
 
 
 def module(name: str) -> ModuleType:

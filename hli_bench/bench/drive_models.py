@@ -2,16 +2,28 @@
 
 import traceback
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from hli_bench.base.errors import STOPS, BenchError, InputError, told
-from hli_bench.base.loading import data_file, module
+from hli_bench.base.loading import SUPPLIED, data_file, is_module, module
+
+FOLDER: Final = "drives."
+"""How machine folders name the drives of the project, after their folder in its source tree."""
+
+
+def supplied_name(name: str) -> str:
+    """Return the module that a path under `drives` means: the project's own where it has one, else the user's.
+
+    The project's are installed as `hli_bench_drives`, because a user's project may have a folder drives/ of its own.
+    """
+    own = f"{SUPPLIED}.{name.removeprefix(FOLDER)}"
+    return own if name.startswith(FOLDER) and is_module(own) else name
 
 
 def drive_model(name: str) -> Any:
     """Return the drive model at a module path. Raises InputError when there is none, or it cannot be loaded."""
     try:
-        loaded = module(name)
+        loaded = module(supplied_name(name))
     except BenchError:
         raise
     except SyntaxError as error:

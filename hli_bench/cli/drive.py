@@ -17,7 +17,7 @@ from hli_bench.protocols.canopen.datatypes import size_of
 from hli_bench.protocols.canopen.eds import Entry, ObjectDictionary, load
 from hli_bench.protocols.canopen.notation import written_in_hex
 
-MODELS: Final = "drives.models"
+MODELS: Final = "hli_bench_drives.models"
 CIA402: Final = 402
 DEVICE_TYPE: Final = (0x1000, 0)
 HEADS: Final = ("OBJECT", "NAME", "TYPE", "ACCESS", "PDO", "DEFAULT", "RANGE")

@@ -9,6 +9,7 @@ from typing import Final
 
 from hli_bench.base import garbage
 from hli_bench.base.errors import BenchError
+from hli_bench.base.loading import SUPPLIED, installed
 from hli_bench.bench.bench import Bench
 from hli_bench.sweep.draws import Plain
 from hli_bench.sweep.expressions import metric
@@ -100,7 +101,7 @@ def code_digest() -> str:
     """Return a digest of the bench's code and drive models: the same code gives the same results."""
     package = Path(__file__).resolve().parent.parent
     digest = hashlib.sha256()
-    for folder in (package, package.parent / "drives", package.parent / "eds"):
+    for folder in (package, installed(SUPPLIED).parent, package.parent / "eds"):
         for path in sorted((*folder.rglob("*.py"), *folder.rglob("*.eds"))):
             digest.update(path.relative_to(folder.parent).as_posix().encode() + path.read_bytes())
     return digest.hexdigest()[:16]

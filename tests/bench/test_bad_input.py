@@ -20,7 +20,7 @@ Command = Callable[..., Ended]
 
 DRIVE_WITHOUT_EDS = """
 from types import SimpleNamespace
-from drives.cia402 import drive
+from hli_bench_drives.cia402 import drive
 from hli_bench.base.loading import data_file
 
 MODEL = SimpleNamespace(eds="nowhere.eds")
@@ -161,7 +161,7 @@ def test_a_drive_model_is_the_same_to_run_and_to_machine_check(
     (tmp_path / "poor_drive.py").write_text(
         DRIVE_WITHOUT_EDS.replace("nowhere.eds", str(tmp_path / "poor.eds"))
     )
-    (tmp_path / "plain_drive.py").write_text("from drives.models.servo402 import create\n")
+    (tmp_path / "plain_drive.py").write_text("from hli_bench_drives.models.servo402 import create\n")
     (tmp_path / "failing_drive.py").write_text("\n1 / 0\n")
     monkeypatch.syspath_prepend(tmp_path)
     empty = program(tmp_path, "N10 M30")

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hli_bench_drives.models import servo402
 
-from drives.models import servo402
 from hli_bench.base.time import Ns
 from hli_bench.laws.rows import SERVO
 from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hli_bench_drives.cia402.drive import Drive, create
 
-from drives.cia402.drive import Drive, create
 from hli_bench.base.errors import InputError
 from hli_bench.base.loading import data_file
 from hli_bench.base.time import Ns

@@ -90,7 +90,7 @@ def command(installed: Path, tmp_path: Path) -> Command:
 
 
 def test_the_package_is_the_installed_one(installed: Path, command: Command) -> None:
-    code = "import hli_bench, drives; print(hli_bench.__file__); print(drives.__file__)"
+    code = "import hli_bench, hli_bench_drives; print(hli_bench.__file__); print(hli_bench_drives.__file__)"
     for line in command("python", "-c", code).stdout.splitlines():
         assert Path(line).is_relative_to(installed.parent)
 

@@ -25,7 +25,7 @@ def test_a_model_shows_its_object_dictionary(capsys: pytest.CaptureFixture[str],
 @pytest.mark.parametrize(
     ("model", "message"),
     [
-        ("servo999", "no module 'drives.models.servo999' on the Python path"),
+        ("servo999", "no module 'hli_bench_drives.models.servo999' on the Python path"),
         (
             "json.decoder",
             "'json.decoder' is no drive model, it has no create()",

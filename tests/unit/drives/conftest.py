@@ -6,9 +6,9 @@ from typing import Any
 import canopen
 import numpy as np
 import pytest
+from hli_bench_drives.cia402.drive import Drive
+from hli_bench_drives.models import servo402
 
-from drives.cia402.drive import Drive
-from drives.models import servo402
 from hli_bench.base.loading import data_file
 from hli_bench.base.time import Ns
 from hli_bench.laws.rows import SERVO

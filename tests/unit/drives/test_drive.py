@@ -6,10 +6,10 @@ from typing import Any
 import canopen
 import numpy as np
 import pytest
+from hli_bench_drives.cia402.drive import STOP_TIMEOUT, Drive, DriveOptions, create
+from hli_bench_drives.cia402.states import State, state_of
+from hli_bench_drives.models import servo402
 
-from drives.cia402.drive import STOP_TIMEOUT, Drive, DriveOptions, create
-from drives.cia402.states import State, state_of
-from drives.models import servo402
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import Ns
 from hli_bench.laws.rows import LOG, SERVO

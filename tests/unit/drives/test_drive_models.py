@@ -2,16 +2,18 @@
 
 import logging
 import pkgutil
+import subprocess
+import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import canopen
+import hli_bench_drives.models
 import numpy as np
 import pytest
+from hli_bench_drives.cia402.states import State
 
-import drives.models
-from drives.cia402.states import State
 from hli_bench.base import loading
 from hli_bench.base.time import Ns
 from hli_bench.bench.schema import DRIVE_TRAIN
@@ -22,7 +24,8 @@ from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame
 
 EDS_FILES = sorted(loading.data_file("eds", ".").glob("*.eds"))
 MODELS = [
-    loading.module(f"drives.models.{info.name}") for info in pkgutil.iter_modules(drives.models.__path__)
+    loading.module(f"hli_bench_drives.models.{info.name}")
+    for info in pkgutil.iter_modules(hli_bench_drives.models.__path__)
 ]
 
 
@@ -101,3 +104,23 @@ class TestModel:
         for entry in values.description:
             if entry.access.writable and entry.index not in special:
                 values.download(entry.index, entry.subindex, values.upload(entry.index, entry.subindex))
+
+
+@pytest.mark.parametrize("package", [True, False], ids=["with __init__", "without"])
+def test_a_folder_called_drives_of_the_user_hides_nothing_and_is_found(tmp_path: Path, package: bool) -> None:
+    folder = tmp_path / "drives"
+    (folder / "mine").mkdir(parents=True)
+    if package:
+        (folder / "__init__.py").touch()
+        (folder / "mine" / "__init__.py").touch()
+    (folder / "mine" / "motor.py").write_text(
+        "from hli_bench_drives.models.servo402 import MODEL, create\n", encoding="utf-8"
+    )
+    code = "from hli_bench import Bench\n" + "\n".join(
+        f"Bench('demo', {{'axis.Z.drive': {name!r}}}).close()"
+        for name in ("drives.models.servo402", "drives.mine.motor", "hli_bench_drives.models.servo402")
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert (ended.returncode, ended.stderr) == (0, "")

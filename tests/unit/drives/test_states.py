@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 import pytest
 from canopen.profiles.p402 import State402
+from hli_bench_drives.cia402.states import TRANSITIONS, State, next_transition, state_of
+from hli_bench_drives.models import servo402
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
 
-from drives.cia402.states import TRANSITIONS, State, next_transition, state_of
-from drives.models import servo402
 from hli_bench.base.time import Ns
 from hli_bench.laws.rows import SERVO
 

@@ -5,10 +5,10 @@ import struct
 from typing import Any
 
 import pytest
+from hli_bench_drives.cia402.drive import Drive
+from hli_bench_drives.cia402.states import State, state_of
+from hli_bench_drives.models import servo402
 
-from drives.cia402.drive import Drive
-from drives.cia402.states import State, state_of
-from drives.models import servo402
 from hli_bench.base.time import Ns
 from hli_bench.laws.machine import advance_machine
 from hli_bench.laws.native import bind

@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-from drives.cia402.faults import Fault, error_register
-from drives.cia402.modes import Mode, SupportedModes, is_supported
-from drives.cia402.touch_probe import (
+from hli_bench_drives.cia402.faults import Fault, error_register
+from hli_bench_drives.cia402.modes import Mode, SupportedModes, is_supported
+from hli_bench_drives.cia402.touch_probe import (
     ProbeFunction,
     ProbeSource,
     ProbeStatus,
@@ -16,7 +15,8 @@ from drives.cia402.touch_probe import (
     touch_probe,
     zero_pulse,
 )
-from drives.models import servo402
+from hli_bench_drives.models import servo402
+
 from hli_bench.base.time import Ns
 from hli_bench.laws.rows import SERVO
 from hli_bench.laws.touch_probe import probe_arm, probe_edge

@@ -138,11 +138,11 @@ def test_a_file_beside_a_plc_script_counts_as_part_of_it(write, tmp_path):
 
 def test_a_drive_model_that_a_run_may_name_counts_as_part_of_it(write, tmp_path, monkeypatch):
     model = tmp_path / "my_drive.py"
-    model.write_text("from drives.models.servo402 import MODEL, create\n")
+    model.write_text("from hli_bench_drives.models.servo402 import MODEL, create\n")
     monkeypatch.syspath_prepend(tmp_path)
     text = GOOD.replace("[grid]", '[grid]\n"axis.Z.drive" = ["drives.models.servo402", "my_drive"]')
     before = read(write(text)).digests
-    model.write_text("from drives.models.servo402 import create\n")
+    model.write_text("from hli_bench_drives.models.servo402 import create\n")
     after = read(write(text)).digests
     assert {name for name in before if before[name] != after[name]} == {"drives"}
     model.write_text(

@@ -12,21 +12,6 @@ from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, Final
 
-from drives.cia402 import telegram
-from drives.cia402.faults import Fault, error_register
-from drives.cia402.modes import Mode, is_supported
-from drives.cia402.options import DriveOptions, FollowingErrorReaction
-from drives.cia402.ramps import DISABLE, STAYS, Ramps, number_of
-from drives.cia402.states import (
-    ENABLE_OPERATION,
-    ControlBit,
-    State,
-    StatusBit,
-    Transition,
-    next_transition,
-    walk,
-)
-from drives.cia402.touch_probe import ProbeSource, resolve_source
 from hli_bench.base.errors import InputError
 from hli_bench.base.time import NS_PER_S, Ns
 from hli_bench.laws.rows import Cells
@@ -39,6 +24,21 @@ from hli_bench.protocols.canopen.eds import ObjectDictionary, load
 from hli_bench.protocols.canopen.nmt import NmtState
 from hli_bench.protocols.canopen.sync import SYNC_COB_ID
 from hli_bench.wire.can import CanFrame
+from hli_bench_drives.cia402 import telegram
+from hli_bench_drives.cia402.faults import Fault, error_register
+from hli_bench_drives.cia402.modes import Mode, is_supported
+from hli_bench_drives.cia402.options import DriveOptions, FollowingErrorReaction
+from hli_bench_drives.cia402.ramps import DISABLE, STAYS, Ramps, number_of
+from hli_bench_drives.cia402.states import (
+    ENABLE_OPERATION,
+    ControlBit,
+    State,
+    StatusBit,
+    Transition,
+    next_transition,
+    walk,
+)
+from hli_bench_drives.cia402.touch_probe import ProbeSource, resolve_source
 
 STOP_TIMEOUT: Final = Ns(NS_PER_S)
 """A stop that lasts longer than its ramp by this ends anyway (decided here)."""

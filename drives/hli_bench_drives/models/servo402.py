@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from drives.cia402 import drive
 from hli_bench.base.loading import data_file
+from hli_bench_drives.cia402 import drive
 
 
 @dataclass(frozen=True, slots=True)

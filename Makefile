@@ -13,7 +13,7 @@ FUZZ ?= 20000
 # How many processes share the tests.
 WORKERS ?= 2
 
-.PHONY: help run test lint pytest test-vcan fuzz coverage-req mutants bench lock clean
+.PHONY: help run test lint pytest test-vcan fuzz coverage-req mutants swarm bench lock clean
 
 help: ## Lists the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -47,6 +47,9 @@ coverage-req: .venv/.dev ## How each requirement line is shown: behaviour, parsi
 
 mutants: .venv/.dev ## Breaks the code on purpose: how many of the changes the marked tests notice
 	$(BIN)/python tools/mutants.py
+
+swarm: .venv/.dev ## 15 minutes of random benches, from a seed that the date gives; docs/net.md
+	seed=$$(date +%s); $(BIN)/python tools/swarm.py --seeds $$seed:$$((seed + 1000000)) --minutes 15
 
 bench: .venv/.dev ## The benchmarks; they print ratios measured side by side
 	for benchmark in benchmarks/[a-z]*.py; do $(BIN)/python "$$benchmark"; done

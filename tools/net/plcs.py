@@ -7,6 +7,7 @@ _ALL: Final = """
         self.n = 0
         self.random = np.random.default_rng({seed})
         self.axes = [n for n in range(1, 9) if n in hli.ax]
+        self.cams = [f"ch{n}" for n in self.axes if n <= (3 if len(self.axes) == 3 else 4)]
         hli.ch[1].head.plc_present_w = True
         for n in self.axes:
             axis = hli.ax[n]
@@ -22,7 +23,7 @@ _ALL: Final = """
             axis = hli.ax[n].lr_mc_control
             axis.probing_signal.command_w = probe.input
             axis.timestamp.command_w = probe.latch_pos if probe.input else probe.latch_neg
-            if n <= 3:
+            if f"ch{n}" in self.cams:
                 axis.reference_cam.command_w = getattr(io.cams, f"ch{n}").input
 """
 _HEAD: Final = (
@@ -60,6 +61,7 @@ SCRIPTS: Final = {
         if self.random.random() < 0.01:
             axis.head.plc_present_w = bool(self.random.random() < 0.9)
 """,
+    "looker": "    def cycle(self, hli, io):\n        self.seen = hli.ax[1].lr_mc_control.probing_signal.state_r\n",
     "silent": "    def cycle(self, hli, io):\n        pass\n",
     "fails": """
     def cycle(self, hli, io):
@@ -69,9 +71,13 @@ SCRIPTS: Final = {
 """,
 }
 """What a script does in its cycle, by name."""
+SERVING: Final = tuple(name for name in SCRIPTS if name != "looker")
+"""Scripts that serve axes: of these a bench has one."""
 
 
 def script(name: str, *, period_us: int = 1000, seed: int = 1) -> str:
     """Return the text of a PLC script."""
     text = _HEAD + _ALL + SCRIPTS[name]
+    if name == "looker":
+        text = _HEAD + SCRIPTS[name]
     return text.replace("{period_us}", str(period_us)).replace("{seed}", str(seed))

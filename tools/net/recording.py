@@ -24,7 +24,7 @@ class Recording:
         self.blocks: list[np.ndarray] = []
         self.events: dict[str, list[Event]] = {name: [] for name in ("edges", "can", "plc", "hli", "cnc")}
         self._bench: Bench | None = None
-        self._shown = b""
+        self._whole = self._shown = b""
 
     def watch(self, bench: Bench) -> None:
         """Hang itself on a bench that has not run yet."""
@@ -43,7 +43,9 @@ class Recording:
     def log(self) -> np.ndarray:
         """Rows of cycle 1, 2, ... by axis."""
         assert self._bench is not None
-        return np.concatenate([self._bench.kernel.rows.log[:0], *self.blocks])
+        if len(self.blocks) != 1:
+            self.blocks = [np.concatenate([self._bench.kernel.rows.log[:0], *self.blocks])]
+        return self.blocks[0]
 
     def cycles(self, first: int, count: int) -> None:
         """Keep the log, look at the HLI."""
@@ -51,6 +53,10 @@ class Recording:
         assert bench is not None
         slots = np.arange(first, first + count) % LOG_CYCLES
         self.blocks.append(bench.kernel.rows.log[slots])
+        whole = bytes(bench.kernel.image.data)
+        if whole == self._whole:
+            return
+        self._whole = whole
         shown = self._image[self._places].tobytes()
         if shown != self._shown:
             self._shown = shown

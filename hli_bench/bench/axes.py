@@ -89,6 +89,8 @@ def _tree(values: Values, cls: type[P], owner: str) -> P:
     if cls is AxisParams:
         # Every drive model of a machine folder is a CANopen one: a list that names no drive type means it.
         given_values.setdefault("kenngr.antr_typ", DriveType.CANOPEN)
+        # P-AXIS-00036 is no parameter of a CANopen drive: unless a list speaks of it, the PLC supplies the cam
+        given_values.setdefault("lr_hw[0].cam_direct_access", False)
     tree = built(cast("Any", cls), tuple(given_values.items()), text, repr(changes))
     for path, finding in tree.findings:
         owned = f"{owner}.{finding.message}" if finding.severity is Severity.NOTE else finding.message

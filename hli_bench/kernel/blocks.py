@@ -14,6 +14,11 @@ class Source:
     line: int
 
     @property
+    def value(self) -> int:
+        """The N number, 0 of a block without one."""
+        return int("".join(filter(str.isdigit, self.number)) or 0) & 0xFFFFFFFF
+
+    @property
     def name(self) -> str:
         """What people look for: the N number, or the line of a block without one."""
         return self.number or (f"line {self.line}" if self.line else "")

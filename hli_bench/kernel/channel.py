@@ -92,6 +92,11 @@ class Channel:
         """The block in execution."""
         return self._path.source or self._source
 
+    @property
+    def standing(self) -> Source:
+        """The block that is executed, or was taken over last, while no path runs."""
+        return self._source
+
     def delete_distance_to_go(self, *, on: bool) -> bool:
         """Drop the rest of the block in motion; tell whether there is one to be dropped."""
         if isinstance(self._activity, Measuring):

@@ -12,10 +12,11 @@ from hli_bench.kernel.channel import Channel
 from hli_bench.kernel.core import Core
 from hli_bench.kernel.decoder import WITHOUT_MOTION, Decoder, DecoderAxis, DecoderDefaults
 from hli_bench.kernel.drive_manager.manager import DriveManager
+from hli_bench.kernel.error_records import ErrorRecords
 from hli_bench.kernel.hindrances import holding, in_vain, unheard
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.reactions import Stop, react
-from hli_bench.kernel.records import Emitted
+from hli_bench.kernel.records import CncError, Emitted
 from hli_bench.kernel.setup import KernelSetup
 from hli_bench.laws.rows import KernelRows
 from hli_bench.manual.errors import hli as hli_errors
@@ -27,6 +28,10 @@ from hli_bench.wire.can import CanFrame
 _TYPE_NUMBER = {"T": 1, "R": 2, "S": 4}
 _LAYOUT_KIND = {"T": "linear", "R": "rotary", "S": "spindle"}
 FULL_OVERRIDE = 1000
+AUTOMATIC = 2
+"""The mode in which programs run."""
+READY, ACTIVE, HELD, ERROR = 3, 4, 5, 6
+"""States of the channel."""
 DEFAULTS = {"release_feedhold": True, "override": FULL_OVERRIDE, "override_feedrate": FULL_OVERRIDE}
 """What holds while no PLC commands it, by the last part of a unit's path."""
 
@@ -46,11 +51,19 @@ class Kernel:
         self.failure: Exception | None = None
         """What went wrong in a cycle that is none of the CNC's errors: bad NC text, something not built, a fault."""
         layout = self.image.layout
-        areas = [f"ax/{axis.number}/lr_state" for axis in setup.axes]
-        offsets = np.array([layout.element(f"{area}/active_position_r").offset for area in areas])
-        image = np.frombuffer(self.image.data, np.uint8)
-        self.positions = image, offsets
-        """Bytes of the HLI image, and where the positions of each axis stand in it: the laws keep them up to date."""
+        areas = [f"ax/{axis.number}" for axis in setup.axes]
+        shown = [f"{area}/lr_state/active_position_acs_r" for area in areas]
+        shown += [f"{area}/head/error_r" for area in areas] + ["ch/1/bahn_state/block_nr_r"]
+        offsets = np.array([layout.element(path).offset for path in shown])
+        self.shown = np.frombuffer(self.image.data, np.uint8), offsets
+        """Bytes of the HLI image, and where in it stands what the laws keep up to date (`laws.publish`)."""
+        self._held = False
+        """Feedhold of the channel is in effect."""
+        self._errors = ErrorRecords(self.core)
+        self._mode = layout.group("ch/1/channel_mc_control/mode_and_state/state_r").ids
+        self._seen: tuple[object, ...] = ()
+        self.image.set(self._mode["mode"], AUTOMATIC)
+        self._show_state()
         self._show_heads()
 
     @property
@@ -69,6 +82,7 @@ class Kernel:
         ]
         decoder = Decoder(lines, name, axes, DecoderDefaults(self.setup.channel.messtyp), without_motion)
         self.channel.start(decoder)
+        self._show_state()
 
     def decide(self) -> None:
         """Decide what comes next: called between `sense` and `act`, `core.cycle` being the cycle.
@@ -84,6 +98,8 @@ class Kernel:
         finally:
             if self.core.failed:
                 self._wind_up()
+            self._errors.step()
+            self._show_state()
 
     def _go_on(self) -> None:
         for unit in self.core.units.sample():
@@ -134,6 +150,9 @@ class Kernel:
     def take_emitted(self) -> list[Emitted]:
         """Return what was emitted since the last call."""
         emitted, self.core.emitted = self.core.emitted, []
+        for record in emitted:
+            if isinstance(record, CncError):
+                self._errors.take(record)
         return emitted
 
     def reset(self) -> None:
@@ -193,6 +212,8 @@ class Kernel:
             core.row(index)["released"] = bool(released) and not held
         elif name == "lr_mc_control/probing_signal":
             core.show(index, "lr_state/probe_actuated_r", unit.redirected and bool(unit.effective))
+        elif name == "lr_mc_control/reference_cam":
+            return unit.effective if not core.axis(index).params.lr_hw[0].cam_direct_access else False
         elif name == "ipo_mc_control/override":
             return FULL_OVERRIDE
         elif name == "ipo_mc_control/override_valid":
@@ -202,7 +223,8 @@ class Kernel:
     def _channel_unit_changed(self, name: str, unit: ControlUnit) -> Value:
         """Act; return what is in effect now."""
         if name == "bahn_mc_control/feedhold":
-            self.core.path.hold(on=bool(unit.effective))
+            self._held = bool(unit.effective)
+            self.core.path.hold(on=self._held)
         elif name == "bahn_mc_control/delete_distance_to_go":
             return self.channel.delete_distance_to_go(on=bool(unit.effective))
         elif name == "bahn_mc_control/override_feedrate":
@@ -210,6 +232,18 @@ class Kernel:
             self.core.path.override(value / FULL_OVERRIDE)
             return value
         return unit.effective
+
+    def _show_state(self) -> None:
+        """Show state and block of the channel, when they have changed."""
+        channel, failed = self.channel, self.core.failed
+        seen = (channel.running, failed, self._held, channel.standing)
+        if seen == self._seen:
+            return
+        self._seen = seen
+        active = HELD if self._held else ACTIVE
+        state = ERROR if failed else active if channel.running else READY
+        self.image.set(self._mode["state"], state)
+        self.core.rows.path[0]["block"] = channel.standing.value if channel.running else 0
 
     def _show_heads(self) -> None:
         for axis in self.setup.axes:

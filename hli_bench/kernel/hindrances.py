@@ -35,7 +35,7 @@ def holding(core: Core) -> list[str]:
 
 def unheard(core: Core) -> list[str]:
     """Return the control units with `enable_w` TRUE whose commands count for nothing, and why."""
-    enabled = ((unit.path, _unheard(unit)) for unit in core.units.enabled())
+    enabled = ((unit.path, _unheard(core, unit)) for unit in core.units.enabled())
     return [f"{path}: {why}" for path, why in enabled if why]
 
 
@@ -51,9 +51,14 @@ def in_vain(core: Core, member: str) -> str:
     if element.member not in ("enable_w", "command_w") or element.group not in core.units:
         return ""
     unit = core.units[element.group]
-    return "" if element.member == "enable_w" and not unit.enabled else _unheard(unit)
+    return "" if element.member == "enable_w" and not unit.enabled else _unheard(core, unit)
 
 
-def _unheard(unit: ControlUnit) -> str:
+def _unheard(core: Core, unit: ControlUnit) -> str:
     """Return why the command of a unit counts for nothing, "" when it does."""
-    return unit.unheard or (_WHY if unit.path.endswith(_WITHOUT_EFFECT) else "")
+    area, number, name = unit.path.split("/", 2)
+    if area == "ax" and name == "lr_mc_control/reference_cam":
+        axis = next(axis for axis in core.setup.axes if axis.number == int(number))
+        direct = axis.params.lr_hw[0].cam_direct_access
+        return unit.unheard or ("P-AXIS-00036 is 1" if direct else "")
+    return unit.unheard or (_WHY if name in _WITHOUT_EFFECT and area == "ax" else "")

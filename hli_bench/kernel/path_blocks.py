@@ -54,6 +54,7 @@ class PathBlocks:
             return
         self._lines.pop(number - SEGMENTS, None)
         self._lines[number] = line
+        self._core.rows.segment[number % SEGMENTS]["block"] = line.source.value
         if cut is not None:
             self._core.preparation.separate()
 

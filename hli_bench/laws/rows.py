@@ -217,6 +217,7 @@ PATH_ROW: Final = np.dtype(
         ("hold", "u1"),  # bits: FEEDHOLD, which holds axes that move by themselves too, SHORT_CUT
         ("brake", "f8", (2,)),  # deceleration below / above `brake_split` while state is BRAKE
         ("brake_split", "f8"),
+        ("block", "u4"),  # N number of the block in execution while no path runs
     ],
     align=True,
 )
@@ -257,6 +258,7 @@ LOG: Final = np.dtype(
 
 SEGMENT: Final = np.dtype(
     [
+        ("block", "u4"),  # N number
         ("length", "f8"),  # 0.1 um
         ("feed", "f8"),  # 0.1 um/s
         ("rapid", "u1"),  # the feed override does not act above 100 %

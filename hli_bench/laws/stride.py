@@ -9,7 +9,7 @@ from typing import Final
 from hli_bench.laws.compiled import law
 from hli_bench.laws.control import act, sense, write_log
 from hli_bench.laws.machine import advance_machine
-from hli_bench.laws.publish import publish_positions
+from hli_bench.laws.publish import publish
 from hli_bench.laws.rows import LOG_CYCLES, Rows
 
 MACHINE: Final = 0
@@ -114,5 +114,5 @@ def stride(
         if edges[0] > edge.shape[0] // 2:
             cycles = done + 1
             break
-    publish_positions(axis, image, offsets)
+    publish(axis, path, segment, leg, image, offsets)
     return cycles * PLACES + MACHINE

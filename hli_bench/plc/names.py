@@ -20,11 +20,12 @@ Shape = tuple[tuple[str, str, int, bool], ...]
 class Frame:
     """What all names of a task share: the layout, the image of the cycle, the values written in it."""
 
-    __slots__ = ("changes", "image", "layout", "nodes", "structures", "transient")
+    __slots__ = ("changes", "image", "layout", "nodes", "old_paths", "structures", "transient")
 
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
         self.structures = _structures(layout)
+        self.old_paths = _old_paths(layout)
         self.nodes: dict[str, Node] = {}
         self.image: bytes | bytearray = b""
         self.changes: dict[int, Value] = {}
@@ -75,6 +76,10 @@ class Node:
             node = node_at(path, self._frame)
             vars(self)[name] = node
             return node
+        if any(old.startswith(f"{self._path}/{name}/") for old in self._frame.old_paths):
+            return Renamed(f"{self._path}/{name}", self._frame)
+        if (place := self._renamed(name)) is not None:
+            return getattr(*place)
         return getattr(self, self._member(name))
 
     def __setattr__(self, name: str, value: Value) -> None:
@@ -96,7 +101,7 @@ class Node:
 
     def _write(self, name: str, value: Value) -> None:
         if name not in self._elements:
-            return setattr(self, self._member(name), value)
+            return setattr(*(self._renamed(name) or (self, self._member(name))), value)
         element = self._elements[name]
         if "w" not in element.access:
             raise AttributeError(f"{element.path} is written by the CNC, a PLC may only read it")
@@ -109,6 +114,11 @@ class Node:
         self._written[name] = value
         self._frame.changes[element.id] = value
         return None
+
+    def _renamed(self, name: str) -> "tuple[Node, str] | None":
+        """Return where an element stands now whose path was `name` in this structure, None for any other name."""
+        old = f"{self._path}/{name}"
+        return place_of(old, self._frame) if old in self._frame.old_paths else None
 
     def _by_old_name(self, path: str) -> str:
         try:
@@ -125,6 +135,45 @@ class Node:
         if member not in self._elements:
             _unknown(name, self._path, dir(self))
         return member
+
+
+class Renamed:
+    """A structure that was: its members are those of other structures now."""
+
+    _frame: Frame
+    _path: str
+
+    def __init__(self, path: str, frame: Frame) -> None:
+        vars(self).update(_path=path, _frame=frame)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        path = f"{self._path}/{name}"
+        if any(old.startswith(f"{path}/") for old in self._frame.old_paths):
+            return Renamed(path, self._frame)
+        return getattr(*self._place(name))
+
+    def __setattr__(self, name: str, value: Value) -> None:
+        setattr(*self._place(name), value)
+
+    def __bool__(self) -> bool:
+        raise TypeError(f"{self._path} is a structure and has no value")
+
+    def _place(self, name: str) -> tuple[Node, str]:
+        path = f"{self._path}/{MEMBER_ALIASES.get(name.lower(), name)}"
+        if path not in self._frame.old_paths:
+            known = [
+                old.rpartition("/")[2] for old in self._frame.old_paths if old.startswith(f"{self._path}/")
+            ]
+            _unknown(name, self._path, known)
+        return place_of(path, self._frame)
+
+
+def place_of(path: str, frame: Frame) -> tuple[Node, str]:
+    """Return structure and member that a path, an earlier one too, means."""
+    element = frame.layout.element(path)
+    return node_at(element.group, frame), element.member
 
 
 class Areas(dict[int, Node]):
@@ -263,6 +312,12 @@ def _structures(layout: Layout) -> Mapping[str, tuple[str, ...]]:
             inside.setdefault("/".join(parts[:depth]), {})[parts[depth]] = None
         inside.setdefault(path, {})
     return {path: tuple(names) for path, names in inside.items()}
+
+
+@lru_cache(maxsize=32)
+def _old_paths(layout: Layout) -> frozenset[str]:
+    """Return all earlier paths of elements."""
+    return frozenset(old for element in layout.elements for old in element.old_paths)
 
 
 def _unknown(name: str, path: str, known: Sequence[str]) -> NoReturn:

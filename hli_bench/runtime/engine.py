@@ -146,7 +146,7 @@ class Engine:
             machine.edge,
             machine.edges,
             pending,
-            *kernel.positions,
+            *kernel.shown,
             self._cycle_ns,
             link.sub_steps,
             kernel.setup.dc_epoch_ns,

@@ -41,9 +41,8 @@ class Restless(Plc):
         self.n = 0
         hli.ch[1].head.plc_present_w = True
         channel = hli.ch[1].bahn_mc_control
-        for unit in (channel.override, channel.override_valid, channel.feedhold):
+        for unit in (channel.override_feedrate, channel.feedhold):
             unit.enable_w = True
-        channel.override_valid.command_w = True
         for n in (1, 2, 3):
             axis = hli.ax[n]
             axis.head.plc_present_w = True
@@ -54,7 +53,7 @@ class Restless(Plc):
         self.n += 1
         channel = hli.ch[1].bahn_mc_control
         if self.n % 50 == 1:
-            channel.override.command_w = int(self.random.integers(300, 1000))
+            channel.override_feedrate.command_w = int(self.random.integers(300, 1000))
             channel.feedhold.command_w = bool(self.random.random() < 0.1)
             hli.ax[1].lr_mc_control.release_feedhold.command_w = bool(self.random.random() < 0.9)
         for n in (2, 3):

@@ -28,10 +28,8 @@ class Override(Plc):
         for n in (1, 2, 3):
             hli.ax[n].head.plc_present_w = True
         unit = hli.ch[1].bahn_mc_control
-        unit.override.enable_w = True
-        unit.override.command_w = 1000
-        unit.override_valid.enable_w = True
-        unit.override_valid.command_w = True
+        unit.override_feedrate.enable_w = True
+        unit.override_feedrate.command_w = 1000
         unit.feedhold.enable_w = True
         for n in (1, 2, 3):
             hli.ax[n].lr_mc_control.release_feedhold.enable_w = True
@@ -110,15 +108,18 @@ def test_short_blocks_are_looked_ahead_over(make, recorder):
 
 @pytest.mark.parametrize(("override", "factor"), [(500, 0.5), (1000, 1.0), (100, 0.1)])
 def test_channel_override_scales_the_feed(make, recorder, acts, override, factor):
-    bench = make(recorder=recorder, plc=[acts((1, f"channel.override.command_w = {override}"))])
+    bench = make(recorder=recorder, plc=[acts((1, f"channel.override_feedrate.command_w = {override}"))])
     bench.advance(5)
     bench.run("%p\nN10 G01 X20 F3000\nN20 M30\n")
 
     assert path_speed(recorder).max() == pytest.approx(50.0 * factor, abs=1e-6)
 
 
-def test_override_counts_only_while_it_is_valid_and_acts_on_the_run(make, recorder, acts):
-    steps = ((150, "channel.override.command_w = 200"), (400, "channel.override_valid.command_w = False"))
+def test_override_counts_only_while_it_is_enabled_and_acts_on_the_run(make, recorder, acts):
+    steps = (
+        (150, "channel.override_feedrate.command_w = 200"),
+        (400, "channel.override_feedrate.enable_w = False"),
+    )
     bench = make(recorder=recorder, plc=[acts(*steps)])
     bench.run("%p\nN10 G01 X40 F3000\nN20 M30\n")
     speed = path_speed(recorder)
@@ -391,7 +392,7 @@ def test_reset_in_short_blocks_brakes_over_their_ends(make, recorder):
 
 @pytest.mark.parametrize(("largest", "factor"), [(1000, 1.0), (1200, 1.2), (600, 0.6)])
 def test_override_is_limited_by_p_chan_00056(make, recorder, acts, largest, factor):
-    plc = acts((1, "channel.override.command_w = 1500"))
+    plc = acts((1, "channel.override_feedrate.command_w = 1500"))
     bench = make({"channel.max_vb_override": largest}, recorder=recorder, plc=[plc])
     bench.run("%p\nN10 G01 X20 F3000\nN20 M30\n")
 

@@ -22,7 +22,7 @@ class Signals(Plc):
             axis = hli.ax[n]
             limit = self.at.get(n)
             axis.lr_mc_control.probing_signal.command_w = (
-                limit is not None and axis.lr_state.active_position_r >= limit
+                limit is not None and axis.lr_state.current_position_acs_r >= limit
             )
 '''
 BY_PLC = {f"axis.{axis}.kenngr.measure.signal": "PLC" for axis in "XYZ"} | {"axis.Z.start_mm": 0.0}

@@ -192,8 +192,7 @@ def _outside() -> Iterator[Run]:
         Act("put", 1.0, "ch/1/head/plc_present_w", 1),
         Act("put", 500.0, f"{unit}/override/command_w", 250),
     ]
-    slow += [Act("put", 2.0, f"{unit}/{name}/enable_w", 1) for name in ("override", "override_valid")]
-    slow += [Act("put", 3.0, f"{unit}/override_valid/command_w", 1)]
+    slow += [Act("put", 2.0, f"{unit}/override/enable_w", 1)]
     yield Run(name="slowed_by_a_client", programs=[move], acts={0: slow}, plcs={})
     yield Run(name="held_for_ever", programs=[move, NEXT], acts={0: held[:3]}, plcs={}, limit_s=3.0)
 

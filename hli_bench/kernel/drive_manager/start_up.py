@@ -157,8 +157,6 @@ def _follow(drive: Drive) -> None:
 def _in_operation(drive: Drive) -> None:
     # A path that still brakes goes on without this axis: it stands where it was taken back into operation.
     drive.core.row(drive.axis)["mode"] = PATH if drive.core.path.idle else HOLD
-    drive.core.show(drive.axis, "lr_state/ready_for_power_on_r", True)
-    drive.core.show(drive.axis, "lr_state/ready_for_control_loop_on_r", True)
 
 
 def _give_up(why: str, drive: Drive) -> None:

@@ -40,11 +40,11 @@ class LrHw:
                 DriveType.PROFIDRIVE,
             ),
             doc=(
-                "Access to the reference cam: 0 the PLC supplies it on the HLI. The bench reads the "
-                "HLI in either case."
+                "Access to the reference cam: 0 the PLC supplies it on the HLI; with 1 the HLI's does not count, and "
+                "hardware of the CNC's own the bench has none."
             ),
             source="homing manual 4.2",
-            effect=Effect.ACCEPTED,
+            effect=Effect.EMULATED,
         ),
     )
     cam_level: bool = param(

@@ -10,7 +10,7 @@ from struct import Struct
 from typing import Final, Self
 
 from hli_bench.base.errors import InputError
-from hli_bench.protocols.hli.rows import MEMBER_ALIASES, Member, axis_members, channel_members
+from hli_bench.protocols.hli.rows import GROUP_ALIASES, MEMBER_ALIASES, Member, axis_members, channel_members
 from hli_bench.wire.images import STRUCT_CODE, size_of
 
 _ST_AREA: Final = re.compile(r"^(?:gp|p)?(Ax|AC|Ch)\[(\d+)\]\^?[./]?", re.IGNORECASE)
@@ -28,6 +28,8 @@ class Element:
     offset: int
     size: int
     access: str
+    old_paths: tuple[str, ...] = ()
+    """Paths by which it was called before."""
 
     @property
     def group(self) -> str:
@@ -43,6 +45,10 @@ class Element:
     def code(self) -> str:
         """Its `struct` code."""
         return STRUCT_CODE[self.type]
+
+
+_WRITTEN: Final = ("id", "path", "type", "unit", "offset", "size", "access")
+"""What of an element must stand in a layout from elsewhere."""
 
 
 class Group:
@@ -104,14 +110,17 @@ class Layout:
         try:
             rows = json.loads(text)
             aliases = {row["path"].rpartition("/")[0]: tuple(row.get("aliases", ())) for row in rows}
-            elements = [Element(*(row[key] for key in Element.__slots__)) for row in rows]
+            elements = [
+                Element(**{key: row[key] for key in _WRITTEN}, old_paths=tuple(row.get("old_paths", ())))
+                for row in rows
+            ]
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise InputError(f"not a layout of an HLI: {error}") from error
         self._index(elements, aliases)
         return self
 
     def to_json(self) -> str:
-        """Return a list of all elements: id, path, type, unit, offset, size, access, aliases of the unit."""
+        """Return a list of all elements: id, path, type, unit, offset, size, access, old names of unit and element."""
         rows = [{**asdict(e), "aliases": list(self._aliases.get(e.group, ()))} for e in self.elements]
         return json.dumps(rows)
 
@@ -165,6 +174,9 @@ class Layout:
         self.groups = {path: Group(at, path, of) for at, (path, of) in enumerate(by_group.items())}
         self.group_of = [self.groups[element.group].index for element in elements]
         self._canonical = {path.casefold(): path for path in (*self._elements_by_path, *self.groups)}
+        for element in elements:
+            for old in element.old_paths:
+                self._canonical.setdefault(old.casefold(), element.path)
         for path, names in self._aliases.items():
             places = {"/".join(path.split("/", 2)[:2]), path.rpartition("/")[0]}
             for old in sorted(f"{place}/{name}".casefold() for place in places for name in names):
@@ -189,7 +201,14 @@ def _placed(areas: Sequence[Member]) -> list[Element]:
         at, group = -(-at // step) * step, member.group
         elements.append(
             Element(
-                len(elements), f"{group}/{member.name}", member.type, member.unit, at, size, member.access
+                len(elements),
+                f"{group}/{member.name}",
+                member.type,
+                member.unit,
+                at,
+                size,
+                member.access,
+                member.old_paths,
             )
         )
         at += size
@@ -203,5 +222,5 @@ def _normal(name: str) -> str:
         area = "ch" if found[1].lower() == "ch" else "ax"
         name = f"{area}/{found[2]}/{name[found.end() :]}"
     parts = [part.strip("^") for part in name.casefold().replace(".", "/").split("/")]
-    parts = [part for part in parts if not _OLD_DATA_AREA.match(part)]
+    parts = [GROUP_ALIASES.get(part, part) for part in parts if not _OLD_DATA_AREA.match(part)]
     return "/".join([*parts[:-1], MEMBER_ALIASES.get(parts[-1], parts[-1])])

@@ -7,6 +7,7 @@ from typing import Final
 from hli_bench.manual.control_units import (
     AXIS_ELEMENTS,
     CHANNEL_ELEMENTS,
+    OLD_GROUPS,
     POSITION,
     HliElement,
     Kind,
@@ -24,6 +25,7 @@ class Member:
     unit: str
     access: str
     group_aliases: tuple[str, ...] = ()
+    old_paths: tuple[str, ...] = ()
 
 
 def axis_members(number: int, *, rotary: bool) -> list[Member]:
@@ -41,15 +43,16 @@ def _members(rows: Sequence[HliElement], number: int, position_unit: str) -> lis
     grouped: dict[str, list[Member]] = {}
     for path, row in numbered(tuple(rows), number):
         unit = position_unit if row.unit == POSITION else row.unit
-        for member in _of(row, path, unit):
+        old = tuple(one.replace("<n>", str(number)) for one in row.old_paths)
+        for member in _of(row, path, unit, old):
             grouped.setdefault(member.group, []).append(member)
     return [member for group in grouped.values() for member in group]
 
 
-def _of(row: HliElement, path: str, unit: str) -> list[Member]:
+def _of(row: HliElement, path: str, unit: str, old: tuple[str, ...]) -> list[Member]:
     if row.kind is Kind.VALUE:
         group, _, name = path.rpartition("/")
-        return [Member(group, name, row.data_type, unit, row.writer)]
+        return [Member(group, name, row.data_type, unit, row.writer, old_paths=old)]
     return [
         Member(
             path,
@@ -67,7 +70,8 @@ def _member_aliases() -> dict[str, str]:
     found: dict[str, str] = {}
     for row in (*AXIS_ELEMENTS, *CHANNEL_ELEMENTS):
         if row.kind is Kind.VALUE:
-            found |= {alias.casefold(): row.path.rpartition("/")[2] for alias in row.aliases}
+            name = row.path.rpartition("/")[2]
+            found |= {alias.casefold(): name for alias in row.aliases}
         for member in row.members():
             found |= {alias.casefold(): member.name for alias in member.aliases}
     return found
@@ -75,3 +79,6 @@ def _member_aliases() -> dict[str, str]:
 
 MEMBER_ALIASES: Final[Mapping[str, str]] = _member_aliases()
 """Old names of members and values, lower case, and what they are called now."""
+
+GROUP_ALIASES: Final[Mapping[str, str]] = {old.casefold(): now for old, now in OLD_GROUPS.items()}
+"""Old names of groups, lower case, and what they are called now."""

@@ -60,7 +60,7 @@ def test_a_flag_of_both_sides_is_compared_with_the_image(program: Any) -> None:
         assert program.hli.ax[1].ext_latch.please_rw is True
         program.hli.ax[1].ext_latch.please_rw = False
         assert program.hli.ax[1].ext_latch.please_rw is False
-        assert program.changes() == {"ax/1/ext_latch/please_rw": False}
+        assert program.changes() == {"ax/1/lr_mc_control/ext_latch_control/please_rw": False}
         program.image.set(please, False)
         program.frame.begin(program.image.data)
         program.hli.ax[1].ext_latch.please_rw = False

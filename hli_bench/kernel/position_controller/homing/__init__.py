@@ -68,7 +68,8 @@ def cam_operated(run: Run) -> bool:
     if params.antr.reference_cam_signal is ReferenceCamSignal.STATUS_DIG_INPUTS:
         return bool(run.core.row(run.axis)["digital_inputs"] & HOME_SWITCH) == params.lr_hw[0].cam_level
     unit = run.core.unit(run.axis, "lr_mc_control/reference_cam")
-    return unit.redirected and bool(unit.effective) == params.lr_hw[0].cam_level
+    heard = unit.redirected and not params.lr_hw[0].cam_direct_access
+    return heard and bool(unit.effective) == params.lr_hw[0].cam_level
 
 
 def reference(run: Run, increments: int) -> None:

@@ -12,6 +12,7 @@ from hli_bench.manual.axis.words import Edge
 
 UNIT = "lr_mc_control/probing_signal"
 UNITS = (UNIT,)
+POSITION = "lr_mc_control/probing_position"
 
 
 def _level(core: Core, axis: AxisIndex) -> bool | None:
@@ -65,8 +66,10 @@ def event(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> Until:
 
 
 def latched(core: Core, axis: AxisIndex, probing_input: int, edge: Edge) -> tuple[float, Ns] | None:
-    """The actual value in the cycle that saw the edge."""
-    return float(core.row(axis)["actual"]), core.dc_now
+    """What the PLC has measured itself, or the actual value in the cycle that saw the edge (HLI, probing position)."""
+    unit = core.unit(axis, POSITION)
+    position = unit.effective if unit.redirected else core.row(axis)["actual"]
+    return float(position), core.dc_now
 
 
 def disarm(core: Core, axis: AxisIndex) -> None:

@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Callable
 from time import monotonic
 from typing import Any, Final
+from zlib import crc32
 
 import zenoh
 
@@ -46,8 +47,16 @@ class Plcs:
         budget_ns: int,
         report: Callable[[list[Refusal]], None],
         tell_detached: Callable[[str, str], None],
+        on_note: Callable[[str], None] = lambda _: None,
     ) -> None:
-        """`report` takes refusals, `tell_detached` the name of a client that takes no part and why."""
+        """`report` takes refusals, `tell_detached` the name of a client that takes no part and why.
+
+        `on_note` gets a line for people when commands of a PLC are refused for the first time.
+        """
+        self._on_note = on_note
+        self._told: deque[str] = deque(maxlen=STRANGERS)
+        """PLCs of whose refused commands people know."""
+        self._crc = f"{crc32(layout.to_json().encode()):08x}"
         self._machine = machine
         self._name_at = len(f"{machine}/plc/")
         self._inbox = inbox
@@ -180,7 +189,7 @@ class Plcs:
         if reason:
             Request(**asked).refuse(reason)
             return None
-        return Attach(**asked, plc=plc, period_us=period, admit=self._admit)
+        return Attach(**asked, plc=plc, period_us=period, admit=self._admit, layout=self._crc)
 
     def _on_commands(self, sample: zenoh.Sample) -> None:
         plc = str(sample.key_expr)[self._name_at : -len(COMMANDS)]
@@ -211,6 +220,9 @@ class Plcs:
             return None
 
     def _refuse(self, plc: str, reason: str) -> None:
+        if plc in self._mail and plc not in self._told:
+            self._told.append(plc)
+            self._on_note(f"plc {plc}: commands: {reason}")
         self._report([Refusal(f"plc/{plc}/commands", reason, plc)])
 
     def _refuse_future(self, commands: Commands, cycle: int) -> None:

@@ -60,6 +60,8 @@ class Attach(Request):
     plc: str
     period_us: int
     admit: Callable[[str], str]
+    layout: str
+    """CRC-32 of the layout, so that a PLC sees whether the ids it has learnt hold for this bench."""
 
     def accept(self, *, cycle: int, cycle_us: int, lockstep: bool) -> bool:
         """Take the PLC in: it answers the images from `cycle` on whose number its period in cycles divides.
@@ -72,7 +74,13 @@ class Attach(Request):
             return False
         self.reply(
             json.dumps(
-                {"cycle": cycle, "cycle_us": cycle_us, "period_us": self.period_us, "lockstep": lockstep}
+                {
+                    "cycle": cycle,
+                    "cycle_us": cycle_us,
+                    "period_us": self.period_us,
+                    "lockstep": lockstep,
+                    "layout": self.layout,
+                }
             )
         )
         return True

@@ -81,13 +81,17 @@ class HliServer:
         self._values = LastValues(layout, terminals)
         self._budget_ns = FREE_NS if lockstep else PACED_NS
         self._inbox = Inbox()
-        self.plcs = Plcs(machine, layout, self._inbox, self._budget_ns, self.report, self._tell_detached)
+        self.plcs = Plcs(
+            machine, layout, self._inbox, self._budget_ns, self.report, self._tell_detached, on_fault
+        )
         self._questions = Questions(machine, self._values, self._budget_ns, self.report)
         self._requests: deque[Request] = deque()
         self._told_dropped = (0, 0.0)
         """How many had been dropped when it was told last, and when that was."""
         self._looks = LOOKS
         self._image_wanted = False
+        self._congestion = zenoh.CongestionControl.DROP if lockstep else zenoh.CongestionControl.BLOCK
+        """In real pace nothing is dropped for a client that does not read: its link is closed (decision 0026)."""
         self._session = listen(endpoint, lockstep=lockstep)
         try:
             self._declare()
@@ -208,7 +212,7 @@ class HliServer:
         self._image = session.declare_publisher(
             f"{machine}/hli/image",
             encoding=PACKED,
-            congestion_control=zenoh.CongestionControl.DROP,
+            congestion_control=self._congestion,
             express=True,
         )
         self._matching = self._image.declare_matching_listener(on_network_thread(self._on_matching))
@@ -288,7 +292,9 @@ class HliServer:
 
     def _put(self, path: str, value: bytes | str) -> None:
         encoding = JSON if isinstance(value, str) else PACKED
-        self._session.put(f"{self.machine}/{path}", value, encoding=encoding)
+        self._session.put(
+            f"{self.machine}/{path}", value, encoding=encoding, congestion_control=self._congestion
+        )
 
     def _path(self, message: zenoh.Sample | zenoh.Query) -> str:
         return str(message.key_expr).removeprefix(f"{self.machine}/")

@@ -19,11 +19,20 @@ PACED_PATIENCE_US: Final = 1000
 PATIENCE_US: Final = 100_000
 """The same of everybody else: in lock-step a lost image or answer would end the PLC, and a busy computer needs ms."""
 
+PACED_CLOSE_US: Final = 10_000
+"""A client of a bench in real pace whose link stays full for so long is let go: its link is closed (decision 0026)."""
+KEEP_ALIVES: Final = 240
+"""So many signs of life of a bench in the time of LEASE_MS, one every 125 ms: zenoh-pico waits for the bench no longer
+than for itself, and a PLC's lease is 500 ms."""
+QUEUE: Final = 16
+"""Batches that wait for a client, the most that Zenoh takes: more in a link without priorities, as of zenoh-pico."""
+
 TEXT: Final = zenoh.Encoding.TEXT_PLAIN
 JSON: Final = zenoh.Encoding.APPLICATION_JSON
 PACKED: Final = zenoh.Encoding.APPLICATION_OCTET_STREAM
 LEASE: Final = "transport/link/tx/lease"
 DROP_AFTER: Final = "transport/link/tx/queue/congestion_control/drop/wait_before_drop"
+CLOSE_AFTER: Final = "transport/link/tx/queue/congestion_control/block/wait_before_close"
 _RUNTIME: Final = "ZENOH_RUNTIME"
 _FEWER_THREADS: Final = "(acc: (handover: rx), app: (handover: rx))"
 """Zenoh's threads that read a socket also wait for it: else every message wakes one thread more on its way.
@@ -38,7 +47,14 @@ def listen(endpoint: str, *, lockstep: bool = True) -> Any:
     """Open the bench's session: a router at `endpoint`. Raises EnvironmentLacks when it cannot listen."""
     try:
         patience_us = PATIENCE_US if lockstep else PACED_PATIENCE_US
-        settings = {"listen/endpoints": [endpoint], DROP_AFTER: patience_us}
+        settings: dict[str, Any] = {
+            "listen/endpoints": [endpoint],
+            DROP_AFTER: patience_us,
+            "transport/link/tx/keep_alive": KEEP_ALIVES,
+            "transport/link/tx/queue/size/data": QUEUE,
+        }
+        if not lockstep:
+            settings[CLOSE_AFTER] = PACED_CLOSE_US
         return _open("router", settings, fewer_threads=lockstep)
     except zenoh.ZError as error:
         raise EnvironmentLacks(

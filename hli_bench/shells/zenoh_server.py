@@ -91,7 +91,7 @@ class HliServer:
         self._looks = LOOKS
         self._image_wanted = False
         self._congestion = zenoh.CongestionControl.DROP if lockstep else zenoh.CongestionControl.BLOCK
-        """In real pace nothing is dropped for a client that does not read: its link is closed (decision 0026)."""
+        """In real pace nothing is dropped for a client that does not read: its link is closed (decision 0025)."""
         self._session = listen(endpoint, lockstep=lockstep)
         try:
             self._declare()

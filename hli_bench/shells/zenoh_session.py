@@ -20,7 +20,7 @@ PATIENCE_US: Final = 100_000
 """The same of everybody else: in lock-step a lost image or answer would end the PLC, and a busy computer needs ms."""
 
 PACED_CLOSE_US: Final = 10_000
-"""A client of a bench in real pace whose link stays full for so long is let go: its link is closed (decision 0026)."""
+"""A client of a bench in real pace whose link stays full for so long is let go: its link is closed (decision 0025)."""
 KEEP_ALIVES: Final = 240
 """So many signs of life of a bench in the time of LEASE_MS, one every 125 ms: zenoh-pico waits for the bench no longer
 than for itself, and a PLC's lease is 500 ms."""

@@ -286,6 +286,11 @@ class Bench:
                 *(f"motion was held: {element}" for element in holding),
                 *(f"enabled in vain: {unit}" for unit in self.kernel.unheard()),
                 *self._without_plc(),
+                *(
+                    [f"{collector.left_out} more messages and errors are left out"]
+                    if collector.left_out
+                    else ()
+                ),
                 *(self._plc_times.remarks() if self._plc_times else ()),
                 *remarks(self.config, self.kernel.channel.unmeasured),
                 *self._foreign_syncs(self.engine.foreign_syncs - syncs),

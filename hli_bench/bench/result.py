@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Final
 
 from hli_bench.base.units import mm
 from hli_bench.kernel.cycle import Kernel
@@ -129,14 +129,20 @@ class Result:
         return found | self.lateness.figures() | {"plcs": [dict(one) for one in self.plcs]}
 
 
+MOST_KEPT: Final = 100_000
+"""Messages, and errors, that a result holds: a program need not end (decided here)."""
+
+
 class Collector:
     """Gathers what the kernel emits while a program runs."""
 
-    __slots__ = ("_axes", "errors", "homing", "messages")
+    __slots__ = ("_axes", "errors", "homing", "left_out", "messages")
 
     def __init__(self, axes: Sequence[AxisSetup]) -> None:
         self._axes = axes
         self.messages: list[Message] = []
+        self.left_out = 0
+        """Messages and errors that came when there were as many as a result holds."""
         self.errors: list[Error] = []
         self.homing: list[Homing] = []
 
@@ -150,6 +156,10 @@ class Collector:
         """Sort records by kind."""
         for record in records:
             match record:
+                case MessageText() if len(self.messages) >= MOST_KEPT:
+                    self.left_out += 1
+                case CncError() if len(self.errors) >= MOST_KEPT:
+                    self.left_out += 1
                 case MessageText():
                     self.messages.append(Message(record.source.name, record.text))
                 case CncError():

@@ -10,8 +10,8 @@ import numpy as np
 from hli_bench import Bench
 from hli_bench.laws.rows import LOG_CYCLES
 
-CONTINUOUS: Final = re.compile(r"position|_lag|following|coord|speed|velocity|torque|distance|time")
-"""Elements that the laws move in every cycle: their numbers stand in the log, an observer sees them by strides only."""
+UNIT_STATE: Final = re.compile(r"mc_control/\w+/state_r$")
+"""What units acknowledge. Other elements of the CNC are filled at the end of a stretch: their last values count."""
 
 Event = tuple[int, str, str]
 """Cycle, what it is about, value."""
@@ -30,9 +30,7 @@ class Recording:
         """Hang itself on a bench that has not run yet."""
         self._bench = bench
         elements = bench.kernel.image.layout.elements
-        self._elements = [
-            one for one in elements if "w" in one.access or not CONTINUOUS.search(one.path.rpartition("/")[2])
-        ]
+        self._elements = [one for one in elements if "w" in one.access or UNIT_STATE.search(one.path)]
         places = [np.arange(one.offset, one.offset + one.size) for one in self._elements]
         self._places = np.concatenate(places)
         self._image = np.frombuffer(bench.kernel.image.data, np.uint8)

@@ -4,7 +4,7 @@ import math
 
 from hli_bench.laws.compiled import law
 from hli_bench.laws.integers import wrap32
-from hli_bench.laws.profile import advance, ramp
+from hli_bench.laws.profile import TINY, advance, braking_path, ramp
 from hli_bench.laws.rows import (
     BRAKE,
     FEEDHOLD,
@@ -149,11 +149,34 @@ def path_held(axis: Rows, path: Row, leg: Rows, slot: int) -> bool:
 
 
 @law
+def velocity_before_hold(axis: Rows, path: Row, segment: Rows, leg: Rows) -> float:
+    """Return how fast the segment under way may be left so that the path stands where a held axis would begin to move.
+
+    An axis that is not released stays where it is, so the way before its own ends at rest. From that border back each
+    segment between allows v^2 = v_end^2 + 2 a length, as in the look-ahead; infinite when no prepared way is held.
+    """
+    held = path["head"] + 1
+    while held < path["tail"] and not path_held(axis, path, leg, held % SEGMENTS):
+        held += 1
+    if held >= path["tail"]:
+        return math.inf
+    square = 0.0
+    for at in range(held - 1, path["head"], -1):
+        one = segment[at % SEGMENTS]
+        square += 2.0 * min(one["deceleration"][0], one["deceleration"][1]) * one["length"]
+    return math.sqrt(square)
+
+
+@law
 def walk_path(axis: Rows, row: Row, segment: Rows, leg: Rows, time: float) -> None:
     """Advance along the prepared segments by `time` seconds."""
+    any_held = False
+    for number in range(axis.shape[0]):
+        any_held = any_held or axis[number]["released"] == 0
     while time > 0.0 and row["state"] != IDLE:
         one = segment[row["head"] % SEGMENTS]
         split = one["split"]
+        v_end = one["v_end"]
         wanted = one["feed"]
         if row["override"] < 1.0 or one["rapid"] == 0:
             wanted *= row["override"]
@@ -168,11 +191,19 @@ def walk_path(axis: Rows, row: Row, segment: Rows, leg: Rows, time: float) -> No
             wanted = 0.0
             low = one["hold"][0]
             high = one["hold"][1]
+        elif any_held:
+            v_end = min(v_end, velocity_before_hold(axis, row, segment, leg))
+            if braking_path(row["v"], v_end, low, high, split) > one["length"] - row["s"] + TINY:
+                # The hold came too late to stand at the border: braking begins at once and goes on into that way.
+                v_end = one["v_end"]
+                wanted = 0.0
+                low = one["hold"][0]
+                high = one["hold"][1]
         s, v, time = advance(
             row["s"],
             row["v"],
             one["length"],
-            one["v_end"],
+            v_end,
             wanted,
             one["acceleration"][0],
             one["acceleration"][1],

@@ -175,6 +175,29 @@ def test_missing_feed_release_of_a_standing_axis_does_not_stop_the_others(make, 
     assert path_speed(recorder)[recorder.writes[0].cycle + 300] == pytest.approx(50.0, abs=1e-6)
 
 
+@pytest.mark.parametrize("at_ms", [100, 700, 822], ids=["long before", "as braking would begin", "too late"])
+def test_a_way_of_an_axis_that_is_not_released_is_entered_from_rest(make, recorder, acts, at_ms):
+    """X runs on into the way of Y and Z at its feed; Y loses its release while X is on its own way.
+
+    What it takes to stand at the border is the braking path of X; nearer than that, braking begins at once.
+    """
+    unit = "axes[2].lr_mc_control.release_feedhold.command_w"
+    bench = make(recorder=recorder, plc=[acts((at_ms, f"{unit} = False"), (2000, f"{unit} = True"))])
+    result = bench.run("%p\nN10 G01 X40 F3000\nN20 G01 X80 Y0.01\nN30 M30\n")
+    held = slice(recorder.writes[0].cycle + 2, recorder.writes[-1].cycle - 3)
+    x, y = recorder.column("command", X)[held], recorder.column("command", Y)[held]
+
+    assert result.completed
+    assert path_speed(recorder)[held][-1] == 0.0
+    assert np.abs(np.diff(path_speed(recorder)) / 1e-3).max() <= 4000.0, "no rate beyond that of a feedhold"
+    if at_ms == 822:
+        assert 400_000.0 < x[-1] < 440_000.0
+    else:
+        assert (x[-1], y.min(), y.max()) == (400_000.0, 0.0, 0.0)
+    assert recorder.column("command", X)[-1] == 800_000.0
+    assert recorder.column("command", Y)[-1] == 100.0
+
+
 WEAK = "#DRIVE WR SYN [AX=X KEY=TORQUE_LIMIT VAL=1 WAIT]\n#DRIVE WR SYN [AX=X KEY=MON_WINDOW VAL=4294967295 WAIT]\n"
 
 

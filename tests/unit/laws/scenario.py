@@ -92,8 +92,9 @@ def digest(cycles: int, per_stride: int) -> str:
         machine.edge,
         machine.edges,
         plant.pending,
-        np.zeros(36, np.uint8),
-        np.array([0, 12, 24]),
+        # 16 bytes an axis, an error flag an axis, the number of the block
+        np.zeros(56, np.uint8),
+        np.array([0, 16, 32, 48, 49, 50, 52]),
         1_000_000,
         8,
         EPOCH_NS,

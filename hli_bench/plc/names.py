@@ -177,13 +177,23 @@ def place_of(path: str, frame: Frame) -> tuple[Node, str]:
 
 
 class Areas(dict[int, Node]):
-    """The axes or channels by number."""
+    """The axes or channels by number; an axis is an attribute by its name too: `hli.ax.Z` is `hli.ax[3]`."""
 
     def __init__(self, area: str, frame: Frame) -> None:
         super().__init__(
             {int(name): node_at(f"{area}/{name}", frame) for name in frame.structures.get(area, ())}
         )
         self._area = area
+        self._names = frame.layout.axes if area == "ax" else {}
+
+    def __getattr__(self, name: str) -> Node:
+        number = None if name.startswith("_") else self._names.get(name.casefold())
+        if number is None:
+            raise AttributeError(
+                f"no {name!r} in {self._area}; there are {', '.join(map(str, self))}"
+                + (f", by name {', '.join(self._names).upper()}" if self._names else "")
+            )
+        return self[number]
 
     def __missing__(self, number: object) -> NoReturn:
         raise KeyError(f"no {self._area}[{number!r}] on this machine; there are {', '.join(map(str, self))}")

@@ -15,7 +15,7 @@ GONE = (0x1401, 0x1601, 0x1801, 0x1802, 0x1803, 0x1A01, 0x1A02, 0x1A03, *range(0
 MODEL = """
 from pathlib import Path
 from types import SimpleNamespace
-from drives.cia402 import drive
+from hli_bench_drives.cia402 import drive
 EDS = Path(__file__).with_suffix(".eds")
 MODEL = SimpleNamespace(name="small", eds=str(EDS))
 def create(name, node_id, row, options):

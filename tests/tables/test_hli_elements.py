@@ -72,7 +72,7 @@ def test_timestamp_unit() -> None:
         ("ch/1/bahn_mc_control/override/X_Enable", "ch/1/bahn_mc_control/override_feedrate/enable_w"),
         ("ch/1/bahn_mc_control/override_valid", None),
         ("ax/1/lr_mc_control/nothing", None),
-        ("ax/z/lr_mc_control/timestamp", None),
+        ("ax/q/lr_mc_control/timestamp", None),
         ("gp/1/lr_mc_control/timestamp", None),
         ("ax/1", None),
     ],

@@ -30,6 +30,8 @@ class Element:
     access: str
     old_paths: tuple[str, ...] = ()
     """Paths by which it was called before."""
+    axis: str = ""
+    """Name of the axis whose it is; `ax/<name>/...` is its path too."""
 
     @property
     def group(self) -> str:
@@ -86,6 +88,7 @@ class Layout:
         "_aliases",
         "_canonical",
         "_elements_by_path",
+        "axes",
         "elements",
         "group_of",
         "groups",
@@ -101,7 +104,8 @@ class Layout:
             areas += axis_members(number, rotary=kind != "linear")
         for number in range(1, channels + 1):
             areas += channel_members(number)
-        self._index(_placed(areas), {member.group: member.group_aliases for member in areas})
+        names = {f"ax/{number}/": name for number, name, _ in axes}
+        self._index(_placed(areas, names), {member.group: member.group_aliases for member in areas})
 
     @classmethod
     def from_json(cls, text: str | bytes) -> Self:
@@ -111,7 +115,11 @@ class Layout:
             rows = json.loads(text)
             aliases = {row["path"].rpartition("/")[0]: tuple(row.get("aliases", ())) for row in rows}
             elements = [
-                Element(**{key: row[key] for key in _WRITTEN}, old_paths=tuple(row.get("old_paths", ())))
+                Element(
+                    **{key: row[key] for key in _WRITTEN},
+                    old_paths=tuple(row.get("old_paths", ())),
+                    axis=str(row.get("axis", "")),
+                )
                 for row in rows
             ]
         except (ValueError, KeyError, TypeError, AttributeError) as error:
@@ -120,7 +128,7 @@ class Layout:
         return self
 
     def to_json(self) -> str:
-        """Return a list of all elements: id, path, type, unit, offset, size, access, old names of unit and element."""
+        """Return a list of all elements: the fields of `Element`, and in `aliases` old names of its unit."""
         rows = [{**asdict(e), "aliases": list(self._aliases.get(e.group, ()))} for e in self.elements]
         return json.dumps(rows)
 
@@ -134,7 +142,7 @@ class Layout:
 
         Upper and lower case are the same, as in ST. Raises InputError with near names for anything else.
         """
-        path = name if name in self._elements_by_path else self._canonical.get(_normal(name))
+        path = name if name in self._elements_by_path else self._canonical.get(self._numbered(_normal(name)))
         if path is None:
             raise InputError(f"no HLI element {name!r}{self._near(name)}")
         return path
@@ -155,6 +163,13 @@ class Layout:
             raise InputError(f"{name!r} is one element, not a unit")
         return self.groups[path]
 
+    def _numbered(self, path: str) -> str:
+        """Return a path with the number of its axis for its name: `ax/z/...` is `ax/3/...`."""
+        area, _, rest = path.partition("/")
+        name, slash, inside = rest.partition("/")
+        number = self.axes.get(name) if area == "ax" else None
+        return path if number is None else f"ax/{number}{slash}{inside}"
+
     def _near(self, name: str) -> str:
         names = get_close_matches(_normal(name), self._canonical, n=3, cutoff=0.7)
         return "; near names: " + ", ".join(self._canonical[near] for near in names) if names else ""
@@ -164,6 +179,8 @@ class Layout:
         self._aliases = {path: names for path, names in aliases.items() if names}
         self.size = -(-max((e.offset + e.size for e in elements), default=0) // 8) * 8
         self._elements_by_path = {element.path: element for element in elements}
+        self.axes = {e.axis.casefold(): int(e.path.split("/")[1]) for e in elements if e.axis}
+        """Numbers of the axes by name, in small letters."""
         packing = {code: Struct("<" + code) for code in {element.code for element in elements}}
         self.packing = [packing[element.code] for element in elements]
         """How each element is packed, by its id; as the next two."""
@@ -191,8 +208,11 @@ def layout_of(axes: tuple[tuple[int, str, str], ...]) -> Layout:
     return Layout(axes)
 
 
-def _placed(areas: Sequence[Member]) -> list[Element]:
-    """Give every member its offset: aligned to its size, each group begins at a multiple of 8."""
+def _placed(areas: Sequence[Member], names: Mapping[str, str]) -> list[Element]:
+    """Give every member its offset: aligned to its size, each group begins at a multiple of 8.
+
+    `names` are the names of the axes by the beginning of their paths.
+    """
     elements: list[Element] = []
     at, group = 0, ""
     for member in areas:
@@ -209,6 +229,7 @@ def _placed(areas: Sequence[Member]) -> list[Element]:
                 size,
                 member.access,
                 member.old_paths,
+                names.get("/".join(group.split("/", 2)[:2]) + "/", ""),
             )
         )
         at += size

@@ -146,3 +146,18 @@ def test_io_reads_the_image_of_its_terminal() -> None:
 def test_a_wrong_entry_is_told_with_near_names(access: Any, message: Any) -> None:
     with pytest.raises(AttributeError, match=message):
         access(io_root([PROBE])[0])
+
+
+def test_an_axis_is_found_by_its_name_here_and_in_paths() -> None:
+    layout = Layout.from_json(Layout([(3, "Z", "linear"), (5, "x2", "rotary")]).to_json())
+    frame = Frame(layout)
+    hli = Hli(frame)
+    frame.begin(bytes(layout.size))
+    assert hli.ax.Z is hli.ax.z is hli.ax[3]
+    assert hli.ax.X2 is hli.ax[5]
+    assert layout.resolve("ax/Z/lr_mc_control/probing_signal") == "ax/3/lr_mc_control/probing_signal"
+    assert layout.element("AX/X2/lr_mc_control/probing_signal/command_w").path.startswith("ax/5/")
+    with pytest.raises(AttributeError, match=r"no 'Y' in ax; there are 3, 5, by name Z, X2"):
+        _ = hli.ax.Y
+    with pytest.raises(AttributeError, match=r"no 'Z' in ch; there are 1"):
+        _ = hli.ch.Z

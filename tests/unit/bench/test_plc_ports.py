@@ -17,7 +17,8 @@ class Answers:
     def commands(self, plc: str, cycle: int, timeout_s: float) -> Commands | None:
         raise AssertionError("not awaited")
 
-    def latest_commands(self, plc: str, cycle: int) -> Commands | None:
+    def latest_commands(self, plc: str, cycle: int, oldest: int = 0) -> Commands | None:
+        assert oldest < cycle
         return Commands(plc, cycle, ()) if cycle <= self.last else None
 
 

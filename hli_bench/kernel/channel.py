@@ -29,6 +29,7 @@ from hli_bench.kernel.drive_manager.probe_telegrams import DRIVE_INPUTS, ProbeTe
 from hli_bench.kernel.hindrances import unserved
 from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.path_blocks import PathBlocks
+from hli_bench.kernel.path_preparation.limits import forbidden
 from hli_bench.kernel.position_controller import measurement
 from hli_bench.kernel.position_controller.measuring_rules import Probe, default_probe, take_settings
 from hli_bench.kernel.records import CncError, MeasuredValue, MessageText, Unmeasured
@@ -275,7 +276,7 @@ class Channel:
                 if not item.ranks:
                     core.report(errors.HOMING_WITHOUT_AXES, item.source)
                 elif self._in_operation(item.source, item.ranks):
-                    self._activity = HomingOrder(core, item)
+                    self._activity = HomingOrder(core, self._monitoring, item)
             case DriveWrite():
                 self._activity = DriveObject.begin(core, self._objects, item)
             case Dwell():
@@ -311,27 +312,8 @@ class Channel:
         return True
 
     def _may_move(self, source: Source, target: Mapping[AxisIndex, float]) -> bool:
-        """Check what forbids the motion: drive, reference, software limit switches (monitored after homing only)."""
-        core = self._core
-        if not self._in_operation(source, target):
-            return False
-        for index, position in target.items():
-            axis = core.axis(index)
-            kenngr = axis.params.kenngr
-            if not core.referenced[index]:
-                if kenngr.prog_move_requires_homing:
-                    core.report(errors.MOTION_NEEDS_HOMING, source, axis.number, axis=index)
-                    return False
-                continue
-            if kenngr.swe_neg >= kenngr.swe_pos or axis.kind != "T":
-                continue
-            if position > mm(kenngr.swe_pos):
-                core.report(errors.POSITIVE_SOFTWARE_LIMIT, source, axis.number, axis=index)
-                return False
-            if position < mm(kenngr.swe_neg):
-                core.report(errors.NEGATIVE_SOFTWARE_LIMIT, source, axis.number, axis=index)
-                return False
-        return True
+        """Check what forbids the motion: a drive out of operation, a missing reference, software limits."""
+        return self._in_operation(source, target) and not forbidden(self._core, source, target)
 
     def _set_measuring(self, settings: MeasureSettings) -> None:
         if settings.error_no_signal is not None:

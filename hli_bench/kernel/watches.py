@@ -62,6 +62,11 @@ def standstill_lag_over(axis: int, limit_tenth_um: float, cycles: int = 1) -> Co
     return Condition(kind=law.W_STANDSTILL_LAG_OVER, axis=axis, limit=limit_tenth_um, cycles=cycles)
 
 
+def outside(axis: int, low_tenth_um: float, high_tenth_um: float) -> Condition:
+    """The actual position is outside of a range."""
+    return Condition(kind=law.W_OUTSIDE, axis=axis, limit=high_tenth_um, window=low_tenth_um)
+
+
 def lag_within(axis: int, limit_tenth_um: float, cycles: int = 1) -> Condition:
     """The position lag is not larger than the limit."""
     return Condition(kind=law.W_LAG_WITHIN, axis=axis, limit=limit_tenth_um, cycles=cycles)

@@ -23,6 +23,7 @@ from hli_bench.laws.rows import (
     W_LAG_WITHIN,
     W_MOVED,
     W_NONE,
+    W_OUTSIDE,
     W_PATH_DONE,
     W_PATH_STANDS,
     W_PROBE_STATUS,
@@ -71,6 +72,8 @@ def holds(one: Row, path: Row, row: Row, cycle: int) -> bool:
         return (one["statusword"] & row["mask"]) != row["value"]
     if kind == W_STATUSWORD:
         return (one["statusword"] & row["mask"]) == row["value"]
+    if kind == W_OUTSIDE:
+        return one["actual"] > row["limit"] or one["actual"] < row["window"]
     if kind == W_CYCLE:
         return cycle >= row["limit"]
     if kind == W_PATH_DONE:

@@ -62,6 +62,7 @@ W_MOVED: Final = 12
 W_FREE: Final = 13
 W_STATUSWORD_LEFT: Final = 14
 W_PATH_STANDS: Final = 15
+W_OUTSIDE: Final = 16
 
 AXIS: Final = np.dtype(
     [

@@ -342,7 +342,7 @@ def test_history_holds_the_positions_of_their_instants(make, recorder):
 
 
 @pytest.mark.req("H-005", "H-027")
-@pytest.mark.parametrize(("start", "target", "number"), [(70, 90, 50041), (-510, -530, 50042)])
+@pytest.mark.parametrize(("start", "target", "number"), [(70, 90, 120002), (-510, -530, 120003)])
 def test_software_limits_act_on_a_homed_axis_only(make, errors, start, target, number):
     limits = {"axis.X.kenngr.swe_pos": 800_000, "axis.X.kenngr.swe_neg": -5_200_000, "axis.X.start_mm": start}
     program = f"%p\nN10 G01 X{target} F6000\nN20 M30\n"
@@ -362,7 +362,33 @@ def test_software_limits_act_on_a_measuring_run_too(make, errors):
         "%p\nN10 G100 Z60 F6000\nN20 M30\n"
     )
 
-    assert errors(result) == [(50041, "Z", "N10")]
+    assert errors(result) == [(120002, "Z", "N10")]
+
+
+@pytest.mark.parametrize(("mode", "number"), [("0x1", [120002]), ("0x4", [])])
+def test_software_limits_of_a_rotary_axis_hold_unless_it_is_modulo(make, mode, number):
+    settings = {"axis.A.kenngr.achs_mode": mode, "axis.A.kenngr.swe_pos": 450_000}
+    result = make(settings).run("N10 G01 A50 F6000\nN20 M30\n")
+    assert [error.id for error in result.errors] == number
+
+
+def test_a_block_beyond_a_limit_is_not_executed_and_those_before_it_are(make, errors):
+    bench = make({"axis.X.kenngr.swe_pos": 300_000})
+    result = bench.run("N10 G01 X20 F6000\nN20 G01 X40 Y10\nN30 M30\n")
+    assert errors(result) == [(120002, "X", "N20")]
+    command = bench.kernel.rows.axis["command"]
+    assert (command[X], command[Y]) == (200_000, 0)
+
+
+def test_an_absolute_axis_that_homes_away_from_its_cam_stops_at_its_limit(make, errors):
+    """The cam lies on the other side: 70021 with P-AXIS-00179, and the axis may move back."""
+    settings = {"axis.X.kenngr.ref_richt": 1, "axis.X.kenngr.swe_pos": 300_000}
+    bench = make(settings)
+    assert errors(bench.run("N10 G74 X1\nN20 M30\n")) == [(70021, "X", "N10")]
+    assert bench.kernel.core.at_rest
+    assert 30.0 < bench.position_mm("X") < 35.0
+    bench.reset()
+    assert bench.run("N10 G01 X10 F6000\nN20 M30\n").completed
 
 
 def test_motion_before_homing_can_be_forbidden(make, errors):

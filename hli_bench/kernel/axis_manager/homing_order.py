@@ -1,11 +1,13 @@
 """G74: axes home in ascending rank, equal ranks together. Source: homing manual 2.2."""
 
 from collections.abc import Iterator
+from functools import partial
 from itertools import groupby
 
 from hli_bench.base.ids import AxisIndex
 from hli_bench.kernel.blocks import Home
 from hli_bench.kernel.core import Core
+from hli_bench.kernel.monitoring import Monitoring
 from hli_bench.kernel.position_controller import homing
 from hli_bench.kernel.position_controller.homing import default
 from hli_bench.kernel.sequence import Sequence
@@ -17,10 +19,11 @@ from hli_bench.manual.errors import path_interpolator as errors
 class HomingOrder:
     """One G74 block on its way."""
 
-    __slots__ = ("_block", "_core", "_groups", "_running")
+    __slots__ = ("_block", "_core", "_groups", "_monitoring", "_running")
 
-    def __init__(self, core: Core, block: Home) -> None:
+    def __init__(self, core: Core, monitoring: Monitoring, block: Home) -> None:
         self._core = core
+        self._monitoring = monitoring
         self._block = block
         ranked = sorted(block.ranks.items(), key=lambda item: (item[1], item[0]))
         groups = [[axis for axis, _ in same] for _, same in groupby(ranked, key=lambda item: item[1])]
@@ -32,6 +35,8 @@ class HomingOrder:
         for _, sequence in self._running:
             sequence.step()
         while all(sequence.ended for _, sequence in self._running):
+            for done, _ in self._running:
+                self._monitoring.limits(done.axis, on=True)
             if self._core.failed:
                 return True
             group = next(self._groups, None)
@@ -69,5 +74,8 @@ class HomingOrder:
         self._core.referenced[axis] = False
         self._core.show(axis, "lr_state/homing_done_r", False)
         run = homing.Run(self._core, self._block.source, axis, float(self._core.row(axis)["actual"]))
+        run.shifts = partial(self._monitoring.limits, axis, on=False)
+        # Without an absolute system nobody knows where the axis is until it has its reference.
+        self._monitoring.limits(axis, on=True)
         sequence = Sequence(default.table(run), run, default.first(run), self._core.watches)
         return run, sequence

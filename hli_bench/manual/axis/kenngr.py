@@ -771,7 +771,7 @@ class Kenngr:
             ),
             doc="How far actual positions may lie beyond the software limit switches.",
             source=axis_page(117309963),
-            effect=Effect.ACCEPTED,
+            effect=Effect.EMULATED,
         ),
     )
     vb_messen: int = param(

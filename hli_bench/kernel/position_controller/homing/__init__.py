@@ -3,6 +3,7 @@
 Shared here: what a strategy works with, how the cam is seen, and how a position becomes the reference.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from hli_bench.base.ids import AxisIndex
@@ -34,6 +35,8 @@ class Run:
     """Where it set out last, 0.1 um, and `before` that."""
     before: float = 0.0
     method: str = ""
+    shifts: Callable[[], None] = lambda: None
+    """To be told that the axis system is shifted now."""
 
     @property
     def setup(self) -> AxisSetup:
@@ -74,6 +77,7 @@ def cam_operated(run: Run) -> bool:
 
 def reference(run: Run, increments: int) -> None:
     """Let the encoder value `increments` be the reference position P-AXIS-00152; the axis system shifts at once."""
+    run.shifts()
     row = run.core.row(run.axis)
     position = run.setup.params.getriebe[0].pos_refpkt
     before = int(row["reference"])

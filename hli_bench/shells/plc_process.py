@@ -18,6 +18,7 @@ from hli_bench.base import garbage
 from hli_bench.base.endpoints import check_key
 from hli_bench.base.errors import BenchError, InputError
 from hli_bench.base.loading import child_command
+from hli_bench.base.plain import plain
 from hli_bench.plc import Task, load, period_of
 from hli_bench.protocols.hli.packing import CommandsPacking, unpack_image
 from hli_bench.shells.zenoh_client import HliClient, Terms
@@ -272,7 +273,7 @@ def main(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt:
         return 0
     except BenchError as error:
-        sys.stderr.write(f"{error}\n")
+        sys.stderr.write(f"{plain(error)}\n")
         return error.exit_status
     return 0
 

@@ -12,6 +12,7 @@ from typing import Final, Self
 
 from hli_bench.base.errors import BenchError, EnvironmentLacks
 from hli_bench.base.loading import child_command
+from hli_bench.base.plain import plain
 from hli_bench.shells import plc_process
 from hli_bench.shells.pipe import Gone, Pipe
 
@@ -211,6 +212,6 @@ def work(main: Callable[[Pipe, Sequence[str]], None], arguments: Sequence[str]) 
     except Gone:
         return 0
     except BenchError as error:
-        sys.stderr.write(f"{error}\n")
+        sys.stderr.write(f"{plain(error)}\n")
         return error.exit_status
     return 0

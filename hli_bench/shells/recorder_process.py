@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hli_bench.base.errors import BenchError
+from hli_bench.base.plain import plain
 from hli_bench.laws.rows import LOG, LOG_CYCLES
 from hli_bench.shells.pipe import Pipe
 from hli_bench.shells.processes import work
@@ -71,7 +72,7 @@ def _closed(sink: Sink) -> str:
 
 
 def _note(note: str) -> None:
-    sys.stderr.write(f"{note}\n")
+    sys.stderr.write(f"{plain(note)}\n")
     sys.stderr.flush()
 
 

@@ -14,11 +14,11 @@ PLC_LEASE_MS: Final = 500
 LEASE_MS: Final = 30_000
 """The same of a bench and of who only asks: they may stand for a while. One that ends closes its sockets."""
 
-PACED_PATIENCE_US: Final = 1000
-"""How long a put of a bench in real pace may wait for a link that is full before the message is dropped."""
 PATIENCE_US: Final = 100_000
-"""The same of everybody else: in lock-step a lost image or answer would end the PLC, and a busy computer needs ms."""
+"""How long a put may wait for a link that is full before the message is dropped; of a bench in real pace none is.
 
+In lock-step a lost image or answer would end the PLC, and a busy computer needs ms.
+"""
 PACED_CLOSE_US: Final = 10_000
 """A client of a bench in real pace whose link stays full for so long is let go: its link is closed (decision 0025)."""
 KEEP_ALIVES: Final = 240
@@ -46,15 +46,12 @@ _SOURCE_PLACE: Final = re.compile(r"\s+at /.*", re.DOTALL)
 def listen(endpoint: str, *, lockstep: bool = True) -> Any:
     """Open the bench's session: a router at `endpoint`. Raises EnvironmentLacks when it cannot listen."""
     try:
-        patience_us = PATIENCE_US if lockstep else PACED_PATIENCE_US
         settings: dict[str, Any] = {
             "listen/endpoints": [endpoint],
-            DROP_AFTER: patience_us,
             "transport/link/tx/keep_alive": KEEP_ALIVES,
             "transport/link/tx/queue/size/data": QUEUE,
         }
-        if not lockstep:
-            settings[CLOSE_AFTER] = PACED_CLOSE_US
+        settings |= {DROP_AFTER: PATIENCE_US} if lockstep else {CLOSE_AFTER: PACED_CLOSE_US}
         return _open("router", settings, fewer_threads=lockstep)
     except zenoh.ZError as error:
         raise EnvironmentLacks(

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Final, TextIO
 
 from hli_bench.base.errors import BenchError, InputError
+from hli_bench.base.plain import plain
 from hli_bench.sweep.campaign import Campaign
 from hli_bench.sweep.engines import Chunk, Engine
 from hli_bench.sweep.progress import Progress
@@ -29,7 +30,7 @@ def run(campaign: Campaign, folder: Path, engine: Engine, workers: int, stream: 
             return _run(campaign, store, engine, workers, stream)
         except KeyboardInterrupt:
             kept = f"{len(store.done())} of {campaign.runs} runs are kept in {folder}"
-            print(f"stopped: {kept}; the same command goes on from there", file=stream, flush=True)
+            print(f"stopped: {plain(kept)}; the same command goes on from there", file=stream, flush=True)
             raise
 
 

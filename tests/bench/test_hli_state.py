@@ -54,7 +54,6 @@ STATE_X = "hli.ax[1].lr_state.axis_state_r"
 HEAD = "hli.ch[1].mc_error.satz_r.kopf"
 
 
-@pytest.mark.req("L-016", "L-150")
 def test_an_axis_is_ready_active_and_on_hold(watch: Watch) -> None:
     body = "control.feedhold.enable_w = True\ncontrol.feedhold.command_w = 300 <= cycles < 500"
     bench, printed = watch([STATE_X], body)
@@ -80,7 +79,6 @@ def test_homing_is_active_and_held_too(watch: Watch) -> None:
     assert printed()[:4] == ["axis_state_r 1", "axis_state_r 3", "axis_state_r 5", "axis_state_r 3"]
 
 
-@pytest.mark.req("L-187")
 def test_mode_and_state_of_the_channel(watch: Watch) -> None:
     body = "control.feedhold.enable_w = True\ncontrol.feedhold.command_w = 300 <= cycles < 500"
     bench, printed = watch([f"{MODE}.mode", f"{MODE}.state"], body)
@@ -94,7 +92,6 @@ def test_mode_and_state_of_the_channel(watch: Watch) -> None:
     assert printed()[: len(states)] == states
 
 
-@pytest.mark.req("L-126")
 def test_the_block_in_execution(watch: Watch) -> None:
     bench, printed = watch(["hli.ch[1].bahn_state.block_nr_r"])
     with bench:
@@ -105,7 +102,6 @@ def test_the_block_in_execution(watch: Watch) -> None:
     assert numbers == [0, 10, 20, 0, 30, 40, 0]
 
 
-@pytest.mark.req("L-193", "L-194", "L-195", "L-196", "L-197")
 def test_errors_are_handed_over_one_by_one(watch: Watch) -> None:
     names = [f"{HEAD}.{name}" for name in ("error_id", "reaktions_klasse", "behebungs_klasse")]
     names += [f"hli.ch[1].mc_error.{name}" for name in ("axis_r", "block_r", "semaphor_rw")]
@@ -143,7 +139,6 @@ def test_a_plc_that_takes_no_records_finds_the_newest(watch: Watch) -> None:
     assert shown == [3, 1]
 
 
-@pytest.mark.req("L-007", "L-008", "L-011")
 def test_active_is_the_command_and_current_the_actual_position(watch: Watch) -> None:
     with Bench("demo", plc=[]) as bench:
         bench.start_up()
@@ -176,7 +171,6 @@ def test_a_drive_in_operation_shows_so(watch: Watch) -> None:
         assert [image.get(one) for one in ids] == [True, True]
 
 
-@pytest.mark.req("L-065")
 def test_probing_position_is_the_measured_value(watch: Watch) -> None:
     body = (
         "z.lr_mc_control.probing_signal.enable_w = z.lr_mc_control.probing_position.enable_w = True\n"

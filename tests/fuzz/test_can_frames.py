@@ -1,6 +1,5 @@
-"""Random frames into a drive: it lives, answers, and its dictionary is whole. HLI_BENCH_FUZZ multiplies them."""
+"""Random frames into a drive: it lives, answers, and its dictionary is whole."""
 
-import os
 import random
 import struct
 from typing import Any
@@ -13,8 +12,8 @@ from hli_bench.base.time import Ns
 from hli_bench.laws.rows import SERVO
 from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame
 from hli_bench.wire.can import CanFrame
+from tests.fuzz.inputs import seeds
 
-SCALE = int(os.environ.get("HLI_BENCH_FUZZ", "1"))
 NODE = 3
 HEARD = (0x000, 0x080, 0x203, 0x303, 0x403, 0x603, 0x603, 0x603, 0x683, 0x703, 0x704, 0x7E5)
 INDICES = (
@@ -48,7 +47,7 @@ def frame(draw: random.Random) -> CanFrame:
     return CanFrame(cob_id, data, draw.random() < 0.03)
 
 
-@pytest.mark.parametrize("seed", range(10 * SCALE))
+@pytest.mark.parametrize("seed", seeds(30))
 def test_random_frames_leave_a_node_alive_and_its_dictionary_whole(seed: int) -> None:
     draw = random.Random(seed)
     row: Any = np.zeros(1, SERVO)[0]

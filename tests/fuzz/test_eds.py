@@ -1,6 +1,5 @@
-"""Mutated EDS files: read, or refused as bad input; a drive made of one lives. HLI_BENCH_FUZZ multiplies them."""
+"""Mutated EDS files: read, or refused as bad input; a drive made of one lives."""
 
-import os
 import random
 import struct
 from pathlib import Path
@@ -17,8 +16,8 @@ from hli_bench.laws.rows import SERVO
 from hli_bench.protocols.canopen.eds import load, parse_text
 from hli_bench.protocols.canopen.nmt import NmtCommand, nmt_frame
 from hli_bench.wire.can import CanFrame
+from tests.fuzz.inputs import seeds
 
-SCALE = int(os.environ.get("HLI_BENCH_FUZZ", "1"))
 EDS = data_file("eds", "servo402.eds").read_text()
 WORDS = (
     "",
@@ -66,7 +65,7 @@ def mutated(draw: random.Random) -> str:
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("seed", range(30 * SCALE))
+@pytest.mark.parametrize("seed", seeds(10))
 def test_a_mutated_eds_is_read_or_refused(seed: int, tmp_path: Path) -> None:
     path = tmp_path / "mutated.eds"
     path.write_text(mutated(random.Random(seed)), encoding="utf-8")
@@ -86,7 +85,7 @@ def test_a_mutated_eds_is_read_or_refused(seed: int, tmp_path: Path) -> None:
         drive.tick(Ns(cycle))
 
 
-@pytest.mark.parametrize("seed", range(30 * SCALE))
+@pytest.mark.parametrize("seed", seeds(10))
 def test_noise_is_no_eds(seed: int) -> None:
     draw = random.Random(seed)
     alphabet = "[]=;\n0123456789ABCDEFabcdefx$NODEIDsub \xff"
@@ -96,4 +95,5 @@ def test_noise_is_no_eds(seed: int) -> None:
         parse_text(text, "noise.eds")
     except InputError as error:
         refused = str(error)
-    assert not refused or refused.startswith("noise.eds: not an EDS: no ")
+    # 400 characters of noise never make a device: it would need a section of its own for each entry
+    assert refused.startswith("noise.eds: not an EDS: no ")

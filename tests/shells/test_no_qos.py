@@ -1,19 +1,25 @@
 """Clients without priorities, as every zenoh-pico client is, and the signs of life that they wait for."""
 
+import json
 import os
 import signal
 import socket
 import subprocess
 import sys
 import time
+from queue import SimpleQueue
 from threading import Thread
+from typing import Any
 from zlib import crc32
 
 from hli_bench.protocols.hli.layout import Layout
+from hli_bench.shells.zenoh_requests import Attach
 from hli_bench.shells.zenoh_server import HliServer
 from hli_bench.shells.zenoh_session import connect
 
 LAYOUT = Layout([(1, "X", "linear"), (2, "Y", "linear")])
+LAYOUT_LIMIT = 100_000
+"""Bytes of the reply to `hli/layout` that docs/interfaces.md tells small clients to have room for."""
 FILL = 30_000
 """Images that no buffer between two processes can hold."""
 READER = """
@@ -66,8 +72,29 @@ def test_a_client_without_priorities_that_stood_hears_again(endpoint: str) -> No
 
 
 def test_the_attach_reply_tells_which_layout_holds(endpoint: str) -> None:
-    with HliServer(endpoint, "demo", LAYOUT, []) as server:
-        assert server.plcs._crc == f"{crc32(LAYOUT.to_json().encode()):08x}"
+    answers: SimpleQueue[Any] = SimpleQueue()
+    with HliServer(endpoint, "demo", LAYOUT, []) as server, connect(endpoint) as session:
+        token = session.liveliness().declare_token("demo/plc/p/alive")
+        session.get("demo/plc/p/attach", answers.put, payload='{"period_us": 1000}', timeout=10.0)
+        session.get("demo/hli/layout", answers.put, timeout=10.0)
+        for _ in range(400):
+            for request in server.wait_request(0.05):
+                assert isinstance(request, Attach)
+                assert request.accept(cycle=5, cycle_us=1000, lockstep=True)
+            if answers.qsize() == 2:
+                break
+        texts = {
+            str(answer.ok.key_expr): answer.ok.payload.to_bytes() for answer in (answers.get(), answers.get())
+        }
+        token.undeclare()
+    told = json.loads(texts["demo/plc/p/attach"])
+    assert told["layout"] == f"{crc32(texts['demo/hli/layout']):08x}"
+    assert len(texts["demo/hli/layout"]) < LAYOUT_LIMIT
+
+
+def test_the_layout_of_eight_axes_is_no_larger_than_the_documents_say() -> None:
+    layout = Layout([(number, f"X{number}", "rotary") for number in range(1, 9)])
+    assert len(layout.to_json()) < LAYOUT_LIMIT
 
 
 def test_a_bench_gives_signs_of_life_within_the_lease_of_a_plc(endpoint: str) -> None:
@@ -98,6 +125,7 @@ def test_a_bench_gives_signs_of_life_within_the_lease_of_a_plc(endpoint: str) ->
             time.sleep(1.0)
             before = len(came)
             time.sleep(5.0)
-            assert len(came) - before >= 5
+            # in 5 s at least one each 250 ms, half of what a lease of 500 ms asks for
+            assert len(came) - before >= 20
         for end in ends:
             end.close()

@@ -195,13 +195,13 @@ def test_values_that_no_bench_can_take(command: Command, settings: list[str], me
 
 def test_what_a_run_does_not_use_is_named_in_one_remark(command: Command, tmp_path: Path) -> None:
     path = program(tmp_path, "N10 G01 X10 F1000", "N20 M30")
-    unused = ("axis.X.kenngr.swe_toleranz=7", "axis.Y.getriebe[0].slope_profil.a_feedh=9")
+    unused = ("axis.X.kenngr.max_vb_override=7", "axis.Y.getriebe[0].slope_profil.a_feedh=9")
     options = [word for one in (*unused, "axis.X.kenngr.vb_messen=9000") for word in ("--set", one)]
     status, _, said = command("run", path, *options)
     assert status == 0
     assert [line for line in said.splitlines() if line.startswith("note: given")] == [
         (
-            "note: given, and nothing in this bench uses it: axis.X.kenngr.swe_toleranz (--set), "
+            "note: given, and nothing in this bench uses it: axis.X.kenngr.max_vb_override (--set), "
             "axis.Y.getriebe[0].slope_profil.a_feedh (--set)"
         )
     ]

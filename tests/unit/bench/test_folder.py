@@ -305,7 +305,7 @@ def test_an_axis_that_names_no_drive_type_has_that_of_its_drive(tmp_path: Path) 
 
 
 def test_what_is_given_and_not_used_is_one_remark(tmp_path: Path) -> None:
-    text = "[axis.W]\nkenngr.swe_toleranz = 7\nkenngr.messachse = 1\n"
+    text = "[axis.W]\nkenngr.max_vb_override = 7\nkenngr.messachse = 1\n"
     settings = {
         "channel.meas_pcs_value_no_probe_radius": 1,
         "axis.W.getriebe[0].slope_profil.a_grenz": 900,
@@ -315,7 +315,7 @@ def test_what_is_given_and_not_used_is_one_remark(tmp_path: Path) -> None:
     assert remark.startswith("note: given, and nothing in this bench uses it: ")
     for path in (
         "channel.meas_pcs_value_no_probe_radius (--set)",
-        "axis.W.kenngr.swe_toleranz (",
+        "axis.W.kenngr.max_vb_override (",
         "axis.W.getriebe[0].slope_profil.a_grenz (",
     ):
         assert path in remark

@@ -281,11 +281,11 @@ def test_homing_without_cam_needs_one_phase() -> None:
 
 def test_accepted_parameter_is_noted() -> None:
     parsed = parse_axis_list(
-        "kenngr.swe_toleranz 1\ngetriebe[0].vb_refmax 90000\ngetriebe[1].vb_refmax 90000"
+        "kenngr.max_vb_override 1\ngetriebe[0].vb_refmax 90000\ngetriebe[1].vb_refmax 90000"
     )
     assert [finding.severity for finding in parsed.findings] == [Severity.NOTE, Severity.NOTE]
     assert [finding.message.split(":")[0] for finding in parsed.findings] == [
-        "kenngr.swe_toleranz",
+        "kenngr.max_vb_override",
         "getriebe[1].vb_refmax",
     ]
 

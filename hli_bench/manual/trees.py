@@ -11,6 +11,7 @@ from hli_bench.manual.axis.words import HomingType
 from hli_bench.manual.catalogue import INDEX, PLACEHOLDER, Catalogue, catalogue, convert
 from hli_bench.manual.drive_types import DriveType
 from hli_bench.manual.measuring_methods import unbuilt
+from hli_bench.manual.modulo import unbuilt_modulo
 from hli_bench.manual.sheet import ARRAY, Array, Effect, Entry, Value
 
 P = TypeVar("P")
@@ -130,8 +131,7 @@ def refusals(cls: type[Any], values: Mapping[str, Value]) -> list[tuple[str, str
     ]
     for path, entry, beside in _defaults(known, values):
         found += [(beside, f"{text}, its default") for text in _refused(entry, path, entry.default)]
-    found += unbuilt(values)
-    return found
+    return [*found, *unbuilt(values), *unbuilt_modulo(values)]
 
 
 def _refused(entry: Entry, path: str, value: Value) -> Iterator[str]:

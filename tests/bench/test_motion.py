@@ -365,11 +365,9 @@ def test_software_limits_act_on_a_measuring_run_too(make, errors):
     assert errors(result) == [(120002, "Z", "N10")]
 
 
-@pytest.mark.parametrize(("mode", "number"), [("0x1", [120002]), ("0x4", [])])
-def test_software_limits_of_a_rotary_axis_hold_unless_it_is_modulo(make, mode, number):
-    settings = {"axis.A.kenngr.achs_mode": mode, "axis.A.kenngr.swe_pos": 450_000}
-    result = make(settings).run("N10 G01 A50 F6000\nN20 M30\n")
-    assert [error.id for error in result.errors] == number
+def test_software_limits_hold_for_a_rotary_axis(make, errors):
+    result = make({"axis.A.kenngr.swe_pos": 450_000}).run("N10 G01 A50 F6000\nN20 M30\n")
+    assert errors(result) == [(120002, "A", "N10")]
 
 
 def test_a_block_beyond_a_limit_is_not_executed_and_those_before_it_are(make, errors):

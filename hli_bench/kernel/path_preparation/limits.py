@@ -9,19 +9,18 @@ from hli_bench.base.ids import AxisIndex
 from hli_bench.base.units import TENTH_UM_PER_MM
 from hli_bench.kernel.blocks import Source
 from hli_bench.kernel.core import Core
-from hli_bench.manual.drive_types import AxisMode
 from hli_bench.manual.errors import path_interpolator as interpolator_errors
 from hli_bench.manual.errors import path_preparation as errors
 
 
 def limited(core: Core, index: AxisIndex) -> bool:
-    """Tell whether the software limits of an axis hold: where it stands must be known, and it must not turn for ever.
+    """Tell whether the software limits of an axis hold: where it stands must be known, and it must be no spindle.
 
-    They hold for linear axes and for rotary axes without modulo calculation, with a reference or an absolute system.
+    They hold for linear and rotary axes (none with modulo calculation is built) with a reference or an absolute system.
     """
     axis = core.axis(index)
     kenngr = axis.params.kenngr
-    if axis.kind == "S" or (axis.kind == "R" and AxisMode.MODULO in kenngr.achs_mode):
+    if axis.kind == "S":
         return False
     return kenngr.swe_neg < kenngr.swe_pos and (core.referenced[index] or kenngr.abs_pos_gueltig)
 

@@ -266,6 +266,7 @@ def test_what_is_not_built_says_so() -> None:
                 (32, "CAN"),
             )
         ),
+        ("kenngr.achs_mode = 0x4", "P-AXIS-00015: kenngr.achs_mode = 0x4: MODULO (0x4)"),
         ("kenngr.achs_mode = 0x10001", "P-AXIS-00015: kenngr.achs_mode = 0x10001: GANTRY_MASTER"),
         ("kenngr.achs_mode = 0x20001", "P-AXIS-00015: kenngr.achs_mode = 0x20001: GANTRY_SLAVE"),
         ("kenngr.gantry_slave_no_homing = 1", "P-AXIS-00074: kenngr.gantry_slave_no_homing = 1"),

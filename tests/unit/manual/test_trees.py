@@ -131,7 +131,16 @@ def test_bits_of_the_axis_mode_are_refused_by_name() -> None:
         "P-AXIS-00015: kenngr.achs_mode = 0x20141: PLANDREHEN (0x40) is not emulated",
         "P-AXIS-00015: kenngr.achs_mode = 0x20141: GANTRY_SLAVE (0x20000) is not emulated",
     ]
-    assert refusals(AxisParams, converted(AxisParams, {"kenngr.achs_mode": 0x400104})) == []
+    assert refusals(AxisParams, converted(AxisParams, {"kenngr.achs_mode": 0x400101})) == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "refused"), [({}, 1), ({"kenngr.achs_typ": 2}, 1), ({"kenngr.achs_typ": 4}, 0)]
+)
+def test_modulo_calculation_is_refused_but_for_spindles(kind: dict[str, int], refused: int) -> None:
+    found = refusals(AxisParams, converted(AxisParams, {"kenngr.achs_mode": 0x400104} | kind))
+    assert [path for path, _ in found] == ["kenngr.achs_mode"] * refused
+    assert all("MODULO (0x4) is not emulated" in text for _, text in found)
 
 
 def test_a_function_is_refused_for_what_is_left_out() -> None:

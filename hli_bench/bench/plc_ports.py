@@ -162,7 +162,9 @@ class AttachedPlc:
         self._publish(cycle, dc_ns, io)
         if self._lockstep:
             return self._exchange.commands(self.name, cycle, self.patience_s)
-        commands = self._exchange.latest_commands(self.name, cycle, cycle - self._lapse_cycles)
+        # What it answers first counts however long its start took.
+        oldest = cycle - self._lapse_cycles if self.patience_s == SILENCE_S else 0
+        commands = self._exchange.latest_commands(self.name, cycle, oldest)
         self._count(cycle, commands)
         if commands is not None:
             self._heard, self.patience_s = cycle, SILENCE_S

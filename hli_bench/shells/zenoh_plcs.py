@@ -65,6 +65,8 @@ class Plcs:
         self._tell_detached = tell_detached
         self._packing = CommandsPacking(layout)
         self._mail: dict[str, deque[bytes]] = {}
+        self._lapsed: dict[str, dict[str, Write]] = {}
+        """What PLCs wrote in answers that were too old, by path: PLCs send changes, so to them it is set."""
         self._strangers: deque[str] = deque(maxlen=STRANGERS)
         self._next_stranger = 0.0
         self._alive: set[str] = set()
@@ -115,8 +117,9 @@ class Plcs:
     def latest_commands(self, plc: str, cycle: int, oldest: int = 0) -> Commands | None:
         """Return all that `plc` wrote since the last call, with the newest cycle it answered, or None.
 
-        An answer to a cycle after `cycle`, where the bench is, or to one before `oldest` is refused. What the budget of
-        a look does not suffice for is left for the next call.
+        An answer to a cycle after `cycle`, where the bench is, is refused. One to a cycle before `oldest` does not
+        count by itself: its writes count with the next answer that is in time, as the PLC will not repeat them. What
+        the budget of a look does not suffice for is left for the next call.
         """
         budget = Budget(self._budget_ns)
         self._inbox.handle(budget)
@@ -129,8 +132,9 @@ class Plcs:
                 self._refuse_future(commands, cycle)
             elif commands is not None and commands.cycle < oldest:
                 self._refuse(plc, f"answers a cycle {cycle - commands.cycle} cycles ago: too old to count")
+                self._lapsed.setdefault(plc, {}).update({write.path: write for write in commands.writes})
             elif commands is not None:
-                writes += commands.writes
+                writes += (*self._lapsed.pop(plc, {}).values(), *commands.writes)
                 newest = max(newest, commands.cycle)
             if not budget.left:
                 break
@@ -143,6 +147,7 @@ class Plcs:
 
     def detach(self, plc: str, reason: str = "") -> None:
         """Let go of a PLC and tell it so, with the reason, unless it has gone."""
+        self._lapsed.pop(plc, None)
         if self._mail.pop(plc, None) is not None:
             self._tell_detached(plc, reason)
         self.late.pop(plc, None)
@@ -161,6 +166,7 @@ class Plcs:
             self._no_stranger(plc)
             return
         self._alive.discard(plc)
+        self._lapsed.pop(plc, None)
         self.late.pop(plc, None)
         if self._mail.pop(plc, None) is not None:
             self._departed.append(plc)

@@ -131,9 +131,9 @@ def test_a_plc_that_has_not_answered_yet_is_starting_and_has_no_overruns() -> No
 
 @pytest.mark.parametrize(("period", "lapse"), [(1, 100), (50, 500)])
 def test_an_answer_to_long_ago_counts_for_nothing(period: int, lapse: int) -> None:
-    port, _, _, oldest = attached({}, period)
-    step(port, range(1000, 1001))
-    assert oldest == [1000 - lapse]
+    port, _, _, oldest = attached({1000: 2}, period)
+    step(port, range(1000, 1002))
+    assert oldest == [0, 1001 - lapse], "however long its start took, what it answers first counts"
 
 
 def test_a_plc_that_only_answers_to_long_ago_is_silent() -> None:
@@ -194,9 +194,17 @@ def test_answers_of_a_plc_that_lags_are_refused_and_told(serve: Callable[..., An
         token = session.liveliness().declare_token("demo/plc/late/alive")
         first = json.loads(client.ask_packed("plc/late/attach", '{"period_us": 1000}'))["cycle"]
         bench.settled(lambda state: state["cycle"] > first + 500)
-        session.put("demo/plc/late/commands", struct.pack("<Q", first))
+        session.put("demo/plc/late/commands", struct.pack("<Q", bench.state()["cycle"]))
+        bench.settled(lambda state: state["plcs"][0]["runs"] > 0)
+        unit = "ax/3/lr_mc_control/timestamp/enable_w"
+        write = struct.pack("<H?", client.layout.element(unit).id, True)
+        session.put("demo/plc/late/commands", struct.pack("<Q", first) + write)
         bench.settled(lambda _: client.hli_errors()["refused"])
         last = client.hli_errors()["last"][-1]
         assert last["path"] == "plc/late/commands"
         assert "too old to count" in last["reason"]
+        assert client.get(unit) is False
+        # A PLC sends changes: what it wrote in vain counts with the next answer that is in time.
+        session.put("demo/plc/late/commands", struct.pack("<Q", bench.state()["cycle"]))
+        bench.settled(lambda _: client.get(unit))
         token.undeclare()

@@ -292,7 +292,7 @@ def test_run_says_what_it_got_and_writes_how_it_kept_its_cycle(
     ]
     assert main(["run", str(program), *options]) == 0
     told = json.loads(result.read_text())
-    assert list(told)[-3:] == ["late_cycles", "worst_lateness_us", "lateness_histogram"]
+    assert {"late_cycles", "worst_lateness_us", "lateness_histogram"} <= set(told)
     assert sum(one["cycles"] for one in told["lateness_histogram"]) == told["cycles"]
     assert len([line for line in capsys.readouterr().err.splitlines() if line.startswith("real time: ")]) == 2
     page = report.read_text()

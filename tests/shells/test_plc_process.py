@@ -23,6 +23,7 @@ from hli_bench.protocols.hli.layout import Layout
 from hli_bench.protocols.hli.packing import IMAGE_HEADER
 from hli_bench.shells.plc_process import ScriptClient, main
 from hli_bench.shells.processes import Deadline, PlcProcess, Worker
+from hli_bench.shells.zenoh_client import Terms
 from hli_bench.shells.zenoh_requests import RunProgram
 from hli_bench.shells.zenoh_session import connect, listen, on_network_thread, payload
 
@@ -365,8 +366,8 @@ def test_a_reset_says_which_drives_stay_out(
     monkeypatch.setattr(door, "RESET_CYCLES", 5)
     with Bench("demo", plc=[], zenoh=endpoint) as bench:
         bench.start_up()
-        monkeypatch.setattr(type(bench.kernel), "ready", property(lambda _: False))
-        monkeypatch.setattr(type(bench.kernel), "out", lambda _: ["X", "Z"])
+        monkeypatch.setattr(type(bench.kernel.drives), "ready", property(lambda _: False))
+        monkeypatch.setattr(type(bench.kernel.drives), "out", lambda _: ["X", "Z"])
         command = start("reset", "--connect", endpoint)
         while command.process.poll() is None:
             bench._door.wait(0.05)
@@ -542,17 +543,17 @@ class _HandedOut:
         self.layout, self.terminals = Layout(()), ()
         self._attached = 0
 
-    def ask_packed(self, path: str, question: str) -> bytes:
+    def attach(self, plc: str, period_us: int) -> Terms:
         self._attached += 1
         if self._attached == 2:
             raise InputError("turned away")
         for key, message in (
-            ("hli/image", IMAGE_HEADER.pack(7, 0)),
+            ("hli/image", IMAGE_HEADER.pack(7, 0) + bytes(self.layout.size)),
             ("plc/hand/detached", b""),
-            ("hli/image", IMAGE_HEADER.pack(8, 0)),
+            ("hli/image", IMAGE_HEADER.pack(8, 0) + bytes(self.layout.size)),
         ):
             self.session.put(f"{self.machine}/{key}", message)
-        return json.dumps({"cycle": 7, "cycle_us": 1000, "period_us": 1000, "lockstep": True}).encode()
+        return Terms(7, 1000, 1000, True)
 
 
 def test_images_behind_the_end_of_an_attachment_are_not_answered(endpoint: str, tmp_path: Path) -> None:

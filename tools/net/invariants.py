@@ -181,7 +181,10 @@ def _acknowledged(trial: Trial, path: re.Pattern[str]) -> Iterator[tuple[str, st
 
 
 def _face(trial: Trial) -> Iterator[str]:
-    """A value that the face gave, with a source that is exact, is the face."""
+    """A value that the face gave, with a source that is exact, is the face.
+
+    Until an axis is homed its coordinates are those of the plant; homing may set them elsewhere, as its list says.
+    """
     settings = trial.scenario.machine.settings
     ideal = not any(
         key.startswith(("plant.probe.pre", "plant.probe.b", "plant.probe.s", "fault")) for key in settings
@@ -189,10 +192,13 @@ def _face(trial: Trial) -> Iterator[str]:
     served = trial.scenario.plcs is None or trial.scenario.plcs[:1] == (
         ("good", trial.scenario.machine.cycle_us),
     )
+    homed = False
     for number, span in enumerate(trial.spans, 1):
         text = str([block.text for block in trial.scenario.steps[number - 1].blocks])
+        homed = homed or "G74" in text
         if (
             not ideal
+            or homed
             or "#CS" in text
             or any(act.what == "put" for act in trial.scenario.steps[number - 1].acts)
         ):

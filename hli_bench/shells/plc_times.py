@@ -134,7 +134,7 @@ class PlcBook:
         ]
 
     def remarks(self) -> Iterator[str]:
-        """Yield a line for people for each task that had some overruns."""
+        """Yield a line for people for each task whose overruns are a good share of its runs."""
         for times in self._tasks:
             if times.part.often:
                 worst = f", {times.part.worst_ns / 1e6:.1f} ms at worst" if times.part.timed else ""

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable, Mapping
 from contextlib import closing
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 from typing import Any
 
 import pytest
@@ -21,7 +22,7 @@ from hli_bench.bench.result import Result
 from hli_bench.shells.pipe import Pipe
 from hli_bench.shells.plc_process import start as start_plc
 from hli_bench.shells.processes import Worker, free_endpoint, work
-from hli_bench.shells.trace_file import TraceEvent, TraceFile, read
+from hli_bench.shells.trace_file import AxesBlock, TraceEvent, TraceFile, TraceReader, read
 
 PATIENCE_S = 60.0
 MACHINE = {
@@ -42,6 +43,7 @@ SERVING = """
 import json, signal, sys
 from contextlib import closing
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 from hli_bench import Bench
 from hli_bench.shells.trace_file import TraceFile
 
@@ -182,6 +184,17 @@ def test_the_trace_that_is_compared_shows_frames_edges_writes_and_records(
     assert sum(len(block.rows) for block in seen if not isinstance(block, TraceEvent)) > 500
 
 
+def told(trace: bytes) -> list[object]:
+    """Return what a trace holds beside overruns, in its order within each topic."""
+    with NamedTemporaryFile(suffix=".mcap") as file:
+        file.write(trace)
+        file.flush()
+        entries = list(TraceReader(Path(file.name)).entries())
+    rows = b"".join(entry.rows.tobytes() for entry in entries if isinstance(entry, AxesBlock))
+    events = [entry for entry in entries if isinstance(entry, TraceEvent) and entry.topic != "overruns"]
+    return [rows, *sorted(events, key=lambda event: event.topic)]
+
+
 @pytest.mark.parametrize("process", [False, True])
 def test_paced_runs_give_the_same_nc_results(traced: Callable[..., Run], process: bool) -> None:
     """By the clock an attached PLC is not waited for: instants may shift by cycles, what is measured does not."""
@@ -189,7 +202,8 @@ def test_paced_runs_give_the_same_nc_results(traced: Callable[..., Run], process
     trace, paced = traced("paced", {**MACHINE, "plc.0.process": process}, pace="real")
     if not process:
         assert paced == free
-        assert trace == traced("again", MACHINE)[0]
+        # A busy computer lets the script overrun, and the trace tells: all but that is the same.
+        assert told(trace) == told(traced("again", MACHINE)[0])
         return
     for key in ("status", "messages", "errors", "variables", "homing"):
         assert paced[key] == free[key], key

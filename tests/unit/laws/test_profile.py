@@ -40,6 +40,7 @@ def _run(
 @settings(max_examples=50, deadline=None)
 @given(lengths, feeds, rates, rates, rates, rates, splits)
 @example(27028.456575876073, 3518096.187349916, 3.38e7, 1.009e7, 6936835.581935832, 5674104.2336521875, 0.0)
+@example(1.0000000000000002, 2e5, 1e6, 1e6, 1e6, 1e6, 0.0)  # the last step rounds to a hair behind the end
 def test_to_a_standstill(
     length: float, feed: float, low: float, high: float, down_low: float, down_high: float, split: float
 ) -> None:
@@ -57,7 +58,8 @@ def test_to_a_standstill(
         assert s - s0 <= max(v, v0, feed) * CYCLE * (1 + 1e-9)
         s0, v0 = s, v
     assert s0 == length
-    assert v0 == 0.0
+    # v = v0 - a t of the last step rounds to units in the last place of v0; the path itself ends at 0
+    assert v0 <= 1e-15 * feed
 
 
 @settings(max_examples=40, deadline=None)
